@@ -1,0 +1,152 @@
+//! The reciprocal table: 1/q, and every other quotient, without a divide.
+//!
+//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1. Its 9 bits behind the
+//! leading one pick an interval of the table, the next 15 interpolate in it. The chord of 1/x over
+//! 1/512 of an octave is too high by up to 2⁻²⁰/x² of the value (f″h²/8), so the entries lie half of
+//! that too low, but for the first, which keeps powers of two exact: the error stays below 2⁻²⁰.
+//! The scheme is that of the Nintendo 64's rasterizer, which has 64 intervals.
+//!
+//! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
+
+use crate::num::wide;
+
+const INTERVALS: usize = 512;
+
+/// 2³¹/x for x = 1 + i/512, less half the error of the chord, 2¹⁰/x³; rounded.
+static TABLE: [u32; INTERVALS + 1] = table();
+
+const fn table() -> [u32; INTERVALS + 1] {
+    let mut table = [0; INTERVALS + 1];
+    let mut i = 0;
+    while i <= INTERVALS {
+        let n = (INTERVALS + i) as u64; // x = n/512
+        let half_chord = if i == 0 { 0 } else { (1 << 37) / (n * n * n) };
+        table[i] = (((1 << 40) + n / 2) / n - half_chord) as u32;
+        i += 1;
+    }
+    table
+}
+
+/// 1/d as a mantissa and the leading zeros of d: 1/d = `mantissa` · 2^(`zeros` − 62).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reciprocal {
+    /// 2³⁰ … 2³¹ − 1.
+    pub(crate) mantissa: i32,
+    /// Leading zeros of the divisor, 0 … 31.
+    pub(crate) zeros: u32,
+}
+
+impl Reciprocal {
+    /// From the table: relative error below 2⁻²⁰. A divisor of 0 counts as 1.
+    #[inline]
+    pub(crate) fn coarse(divisor: u32) -> Self {
+        let divisor = divisor.max(1);
+        let zeros = divisor.leading_zeros();
+        let m = divisor << zeros;
+        let i = (m >> 22) as usize & (INTERVALS - 1);
+        let (left, right) = (TABLE[i], TABLE[i + 1]);
+        // 17 bits × 15 bits.
+        let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
+        // 2³¹ itself, for powers of two, is one too many for an i32.
+        Self { mantissa: (left - fall).min(i32::MAX as u32) as i32, zeros }
+    }
+
+    /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors
+    /// below 2³¹. A divisor of 0 counts as 1.
+    #[inline(never)]
+    pub(crate) fn precise(divisor: u32) -> Self {
+        let Self { mantissa, zeros } = Self::coarse(divisor);
+        let half_m = ((divisor.max(1) << zeros) >> 1) as i32;
+        // r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹;  y += y·r/2⁶¹.
+        let r = (1 << 61) - wide(half_m, mantissa);
+        let step = (wide(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
+        let mantissa = (i64::from(mantissa) + step).min(i64::from(i32::MAX)) as i32;
+        Self { mantissa, zeros }
+    }
+
+    /// The quotient `numerator / divisor`, rounded down, and the remainder 0 … `divisor` − 1.
+    /// `self` is the precise reciprocal of `divisor` (1 … 2²⁴).
+    #[inline]
+    pub(crate) fn div_rem(self, numerator: i32, divisor: i32) -> (i32, i32) {
+        let mut quotient = (wide(numerator, self.mantissa) >> (62 - self.zeros)) as i32;
+        let mut remainder = numerator.wrapping_sub(quotient.wrapping_mul(divisor));
+        // The estimate is off by at most a few; most often these loops do not run.
+        while remainder < 0 {
+            quotient -= 1;
+            remainder += divisor;
+        }
+        while remainder >= divisor {
+            quotient += 1;
+            remainder -= divisor;
+        }
+        (quotient, remainder)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::println;
+
+    #[expect(clippy::float_arithmetic, reason = "the f64 truth of a test")]
+    fn relative_error(r: Reciprocal, divisor: u32) -> f64 {
+        let exact = 2f64.powi(62 - r.zeros as i32) / f64::from(divisor);
+        f64::from(r.mantissa) / exact - 1.0
+    }
+
+    #[test]
+    #[expect(clippy::float_arithmetic, reason = "bounds in f64")]
+    fn coarse_is_within_2_pow_minus_20_for_every_input_of_its_table_stage() {
+        // The table stage sees 24 bits behind normalisation: 2²³ … 2²⁴ − 1 are all its inputs.
+        let (mut low, mut high) = (0f64, 0f64);
+        for d in 1u32 << 23..1 << 24 {
+            let error = relative_error(Reciprocal::coarse(d), d);
+            (low, high) = (low.min(error), high.max(error));
+        }
+        println!(
+            "reciprocal, coarse: 2^23 inputs, error {:+.3} … {:+.3} · 2^-20",
+            low * 2f64.powi(20),
+            high * 2f64.powi(20)
+        );
+        assert!(low > -(2f64.powi(-20)) && high < 2f64.powi(-20));
+    }
+
+    #[test]
+    #[expect(clippy::float_arithmetic, reason = "bounds in f64")]
+    fn both_hold_for_a_dense_sample_of_all_32_bit_inputs() {
+        let (mut coarse, mut precise) = (0f64, 0f64);
+        let mut count = 0;
+        for shift in 0..32 {
+            // Prime strides: 2¹⁵ or more of every octave.
+            let first = 1u64 << shift;
+            let stride = ((first >> 15) | 1) as usize;
+            for d in (first..2 * first).step_by(stride) {
+                let d = d as u32;
+                coarse = coarse.max(relative_error(Reciprocal::coarse(d), d).abs());
+                if d < 1 << 31 {
+                    precise = precise.max(relative_error(Reciprocal::precise(d), d).abs());
+                }
+                count += 1;
+            }
+        }
+        println!(
+            "reciprocal, {count} inputs of 1 … 2^32-1: coarse within 2^{:.2}, precise within 2^{:.2}",
+            coarse.log2(),
+            precise.log2()
+        );
+        assert!(coarse < 2f64.powi(-20));
+        assert!(precise < 2f64.powi(-30));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn quotients_are_exact_in_100_000_cases(n: i32, d in 1i32..1 << 24, small in 1i32..300) {
+            for d in [d, small] {
+                let r = Reciprocal::precise(d as u32);
+                prop_assert_eq!(r.div_rem(n, d), (n.div_euclid(d), n.rem_euclid(d)));
+            }
+        }
+    }
+}

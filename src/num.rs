@@ -1,0 +1,131 @@
+//! Number formats, literals, and the only multiply.
+//!
+//! Every quantity has one format, named after its integer and fraction bits as in the [`fixed`]
+//! crate: `I4F12` is a signed number of 4 integer bits (sign included) and 12 fraction bits.
+//!
+//! | quantity | format | range | step |
+//! |---|---|---|---|
+//! | mesh position | [`I4F12`] | −8 … 7.9998 | 1/4096 |
+//! | mesh texture coordinate | [`I12F4`] | −2048 … 2047.9 texels | 1/16 texel |
+//! | rotation matrix, sine | [`I2F14`] | −2 … 1.9999 | 1/16384 |
+//! | scale of a pose | [`U10F22`] | 0 … 1023.9999998 | 2.4·10⁻⁷ |
+//! | world position | [`I16F16`] | −32768 … 32767.99998 | 1/65536 |
+//! | screen position | [`I12F4`] | guard band −1024 … 1023 px | 1/16 px |
+//! | q = near/w | [`U1F31`] | 0 … 1 − 2⁻³¹ | 2⁻³¹ |
+//! | texture coordinate on screen | [`I16F16`] | −8192 … 8192 texels | 2⁻¹⁶ texel |
+//! | colour channel on screen | [`U8F8`] | 0 … 255 is dark … full | 1/256 |
+
+pub use fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
+
+/// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
+///
+/// Most cores have an instruction for it. Armv6-M has not: there the compiler would call a library
+/// routine for 64 × 64 bits (52 instructions), so the product is put together from four 16-bit ones.
+#[inline]
+pub(crate) const fn wide(a: i32, b: i32) -> i64 {
+    // No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps.
+    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+        wide_split(a, b)
+    } else {
+        a as i64 * b as i64
+    }
+}
+
+/// [`wide`] from four products of 16-bit halves, none of which overflows 32 bits.
+#[inline]
+const fn wide_split(a: i32, b: i32) -> i64 {
+    let (a_high, a_low) = (a >> 16, a & 0xffff);
+    let (b_high, b_low) = (b >> 16, b & 0xffff);
+    let low = (a_low as u32).wrapping_mul(b_low as u32);
+    // −2¹⁵·(2¹⁶−1) … (2¹⁵−1)(2¹⁶−1) + 2¹⁶ − 1 fits an i32, twice.
+    let middle = a_high * b_low + (low >> 16) as i32;
+    let middle_2 = a_low * b_high + (middle & 0xffff);
+    let high = a_high * b_high + (middle >> 16) + (middle_2 >> 16);
+    let low = ((middle_2 as u32) << 16) | (low & 0xffff);
+    ((high as i64) << 32) | low as i64
+}
+
+/// `a · b / 2^S`, rounded to nearest, halves up; the low 32 bits of it.
+#[inline]
+pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
+    ((wide(a, b) + (1 << (S - 1))) >> S) as i32
+}
+
+/// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.
+#[inline]
+pub(crate) const fn shift_round(value: i64, shift: u32) -> i64 {
+    if shift == 0 { value } else { ((value >> (shift - 1)) + 1) >> 1 }
+}
+
+/// The raw bits of `value` in a format with `fraction_bits`, rounded to nearest and saturated to
+/// an `i32`; 0 for NaN. Meant for constants: at run time it costs a few soft-float calls.
+#[expect(clippy::float_arithmetic, reason = "set-up convenience, folded in constants")]
+pub(crate) const fn bits_from_f32(value: f32, fraction_bits: u32) -> i32 {
+    let scaled = value as f64 * (1u64 << fraction_bits) as f64;
+    // `as` saturates and turns NaN into 0.
+    (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
+}
+
+/// As [`bits_from_f32`], saturated to an `i16`.
+pub(crate) const fn bits16_from_f32(value: f32, fraction_bits: u32) -> i16 {
+    let bits = bits_from_f32(value, fraction_bits);
+    if bits > i16::MAX as i32 {
+        i16::MAX
+    } else if bits < i16::MIN as i32 {
+        i16::MIN
+    } else {
+        bits as i16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn split_multiply_is_the_widening_one_at_every_corner() {
+        let corners = [
+            i32::MIN,
+            i32::MIN + 1,
+            -65537,
+            -65536,
+            -65535,
+            -32768,
+            -1,
+            0,
+            1,
+            32767,
+            65535,
+            65536,
+            65537,
+            i32::MAX - 1,
+            i32::MAX,
+        ];
+        for a in corners {
+            for b in corners {
+                assert_eq!(wide_split(a, b), i64::from(a) * i64::from(b), "{a} · {b}");
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn split_multiply_is_the_widening_one_in_100_000_cases(a: i32, b: i32) {
+            prop_assert_eq!(wide_split(a, b), i64::from(a) * i64::from(b));
+        }
+    }
+
+    #[test]
+    fn literals_round_saturate_and_take_nan() {
+        assert_eq!(bits_from_f32(1.5, 12), 6144);
+        assert_eq!(bits_from_f32(-0.5 / 65536.0, 16), -1);
+        assert_eq!(bits_from_f32(0.49 / 65536.0, 16), 0);
+        assert_eq!(bits_from_f32(f32::NAN, 16), 0);
+        assert_eq!(bits_from_f32(f32::INFINITY, 16), i32::MAX);
+        assert_eq!(bits_from_f32(f32::NEG_INFINITY, 16), i32::MIN);
+        assert_eq!(bits16_from_f32(9.0, 12), i16::MAX);
+        assert_eq!(bits16_from_f32(-9.0, 12), i16::MIN);
+    }
+}

@@ -1,0 +1,101 @@
+//! What happens to a triangle, in order:
+//!
+//! ```text
+//!            transform         clip            setup            span      shade
+//! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
+//! ```
+
+mod clip;
+mod setup;
+mod shade;
+mod span;
+mod transform;
+
+pub use clip::ScreenVertex;
+pub use setup::Cull;
+pub use shade::{Affine, Exact, Inputs, Quality, QuarterPixel, Shader, Varying};
+pub use span::Span;
+
+use crate::math::Pose;
+use crate::scene::{Projection, Vertex};
+use crate::target::{Band, DepthFormat, PixelFormat};
+use clip::Clip;
+use core::fmt;
+pub(crate) use setup::TriangleSetup;
+use transform::ToClip;
+
+/// The pipeline of one mesh in one pose before one camera, from vertex to pixel.
+pub(crate) struct Pipeline {
+    to_clip: ToClip,
+    clip: Clip,
+}
+
+impl Pipeline {
+    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
+        let to_clip = ToClip::new(projection, camera, pose);
+        let clip = Clip::new(projection, to_clip.unit_bits());
+        Self { to_clip, clip }
+    }
+
+    pub(crate) fn draw<F, D, S>(&self, corners: [&Vertex; 3], shader: &S, band: &mut Band<'_, F, D>)
+    where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        let corners = corners.map(|vertex| self.to_clip.transform(vertex));
+        self.clip.clip(corners, |triangle| draw_checked(triangle, shader.cull(), shader, band));
+    }
+}
+
+/// Draws one triangle that is on the screen already: the door for callers with their own vertices.
+///
+/// Only the rows of `band` are drawn, and only what `cull` does not leave out.
+///
+/// # Errors
+///
+/// [`RangeError`] if a vertex lies outside the guard band or a texture coordinate beyond ±8192
+/// texels; nothing is drawn then.
+pub fn draw_triangle<F, D, S>(
+    vertices: &[ScreenVertex; 3],
+    cull: Cull,
+    shader: &S,
+    band: &mut Band<'_, F, D>,
+) -> Result<(), RangeError>
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    if !vertices.iter().all(ScreenVertex::in_range) {
+        return Err(RangeError);
+    }
+    draw_checked(vertices, cull, shader, band);
+    Ok(())
+}
+
+fn draw_checked<F, D, S>(vertices: &[ScreenVertex; 3], cull: Cull, shader: &S, band: &mut Band<'_, F, D>)
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    if let Some(setup) = TriangleSetup::new(vertices, cull, shader.inputs(), S::Quality::PERSPECTIVE) {
+        band.draw(&setup, shader);
+    }
+}
+
+/// A vertex lies outside the guard band, or its texture coordinates are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RangeError;
+
+impl fmt::Display for RangeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "a screen vertex lies outside -1024 to 1023 px or its texture coordinates outside ±8192 texels"
+        )
+    }
+}
+
+impl core::error::Error for RangeError {}

@@ -1,0 +1,140 @@
+//! Stage 4: a triangle's rows.
+//!
+//! Along a row each edge that is not level gives one number: how many pixel centres lie to its left.
+//!
+//! ```text
+//!   pixel       0     1     2     3     4     5
+//!   centres     ·     ·     ·     ·     ·     ·
+//!                  \                 /
+//!                   left edge: 1    right edge: 4      → pixels 1 … 3
+//! ```
+//!
+//! A centre on the edge itself counts as right of it. So a left edge owns the centres on it and
+//! a right edge does not, a level top edge does and a level bottom edge does not (a row belongs to the
+//! triangle if top ≤ centre < bottom): the top-left rule. Two triangles that share an edge ask for the
+//! same number, one as its end and one as its start: no centre is missed and none drawn twice, by construction.
+//!
+//! The number is ceil(−E/16dy) for the edge function E at the row's first centre. From row to row it changes
+//! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
+
+use super::setup::TriangleSetup;
+use crate::math::recip::Reciprocal;
+use core::ops::Range;
+
+/// Pixels of one row of a triangle, side by side and all visible; handed to a
+/// [`Shader`](super::Shader).
+#[derive(Clone, Copy, Debug)]
+pub struct Span<'a> {
+    pub(super) setup: &'a TriangleSetup,
+    pub(super) x: i32,
+    pub(super) y: i32,
+}
+
+impl<'a> Span<'a> {
+    pub(crate) fn new(setup: &'a TriangleSetup, x: i32, y: i32) -> Self {
+        Self { setup, x, y }
+    }
+
+    /// Column of the first pixel.
+    #[must_use]
+    pub const fn x(&self) -> i32 {
+        self.x
+    }
+
+    /// Row on the screen (not in the band).
+    #[must_use]
+    pub const fn y(&self) -> i32 {
+        self.y
+    }
+
+    pub(crate) const fn setup(&self) -> &'a TriangleSetup {
+        self.setup
+    }
+
+    /// q = near/w with 31 fraction bits at the first pixel, and its step.
+    pub(crate) fn depth(&self) -> (u32, i32) {
+        let plane = &self.setup.z;
+        (plane.at(self.setup.weights(self.x, self.y)), plane.step)
+    }
+}
+
+/// An edge from row to row.
+#[derive(Debug)]
+struct Edge {
+    /// Pixel centres left of the edge.
+    x: i32,
+    /// By how much the edge lies right of where it would meet the centre before, 0 … `divisor` − 1.
+    remainder: i32,
+    slope: i32,
+    slope_remainder: i32,
+    /// 16·dy.
+    divisor: i32,
+}
+
+impl Edge {
+    /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
+    fn new(top: [i32; 2], bottom: [i32; 2], row: i32) -> Self {
+        let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
+        let divisor = 16 * dy;
+        let reciprocal = Reciprocal::precise(divisor as u32);
+        // −E at centre 0, plus divisor − 1 to round up: below 16392·32752 + 32752² + 524032 < 2³¹.
+        let below = row * 16 + 8 - top[1];
+        let (x, remainder) = reciprocal.div_rem((top[0] - 8) * dy + below * dx + divisor - 1, divisor);
+        let (slope, slope_remainder) = reciprocal.div_rem(16 * dx, divisor);
+        Self { x, remainder, slope, slope_remainder, divisor }
+    }
+
+    fn next_row(&mut self) {
+        self.x += self.slope;
+        self.remainder += self.slope_remainder;
+        if self.remainder >= self.divisor {
+            self.remainder -= self.divisor;
+            self.x += 1;
+        }
+    }
+}
+
+/// The first row whose centres lie on or below `y` (1/16 px).
+const fn first_row(y: i32) -> i32 {
+    (y + 7) >> 4
+}
+
+impl TriangleSetup {
+    /// Hands on every row of the triangle within `rows`, as its row and its pixels within `columns`.
+    pub(crate) fn rows(&self, rows: Range<i32>, columns: Range<i32>, mut emit: impl FnMut(i32, Range<i32>)) {
+        let [mut top, mut middle, mut bottom] = self.corners;
+        if middle[1] < top[1] {
+            (top, middle) = (middle, top);
+        }
+        if bottom[1] < middle[1] {
+            (middle, bottom) = (bottom, middle);
+            if middle[1] < top[1] {
+                (top, middle) = (middle, top);
+            }
+        }
+        let start = first_row(top[1]).max(rows.start);
+        let end = first_row(bottom[1]).min(rows.end);
+        if start >= end {
+            return;
+        }
+        let knee = first_row(middle[1]).clamp(start, end);
+        let long_is_left =
+            (bottom[0] - top[0]) * (middle[1] - top[1]) - (bottom[1] - top[1]) * (middle[0] - top[0]) < 0;
+        let mut long = Edge::new(top, bottom, start);
+        for (rows, from, to) in [(start..knee, top, middle), (knee..end, middle, bottom)] {
+            if rows.is_empty() {
+                continue;
+            }
+            let mut short = Edge::new(from, to, rows.start);
+            for y in rows {
+                let (left, right) = if long_is_left { (long.x, short.x) } else { (short.x, long.x) };
+                let pixels = left.max(columns.start)..right.min(columns.end);
+                if pixels.start < pixels.end {
+                    emit(y, pixels);
+                }
+                long.next_row();
+                short.next_row();
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Meshes: vertices and triangles in flash.
+
+use crate::num::{I4F12, I12F4, bits16_from_f32};
+use core::fmt;
+
+/// A vertex of a mesh, 16 bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Vertex {
+    /// Position in mesh units; the pose places and scales it.
+    pub position: [I4F12; 3],
+    /// Texture coordinates in texels, (0, 0) the texture's first texel's outer corner.
+    pub uv: [I12F4; 2],
+    /// Red, green, blue, for [`Material::gouraud`](crate::Material::gouraud).
+    pub color: [u8; 3],
+}
+
+impl Vertex {
+    /// A vertex at a position from literals, −8 … 7.9998: rounded to 1/4096, saturated, NaN is 0.
+    #[must_use]
+    pub const fn new(x: f32, y: f32, z: f32) -> Self {
+        Self {
+            position: [
+                I4F12::from_bits(bits16_from_f32(x, 12)),
+                I4F12::from_bits(bits16_from_f32(y, 12)),
+                I4F12::from_bits(bits16_from_f32(z, 12)),
+            ],
+            uv: [I12F4::ZERO; 2],
+            color: [255; 3],
+        }
+    }
+
+    /// The same with texture coordinates in whole texels, −2048 … 2047 (saturated).
+    #[must_use]
+    pub const fn uv(mut self, u: i16, v: i16) -> Self {
+        self.uv = [whole_texels(u), whole_texels(v)];
+        self
+    }
+
+    /// The same with texture coordinates in texels, in steps of 1/16.
+    #[must_use]
+    pub const fn uv_sixteenths(mut self, u: I12F4, v: I12F4) -> Self {
+        self.uv = [u, v];
+        self
+    }
+
+    /// The same with a colour.
+    #[must_use]
+    pub const fn color(mut self, red: u8, green: u8, blue: u8) -> Self {
+        self.color = [red, green, blue];
+        self
+    }
+}
+
+const fn whole_texels(texels: i16) -> I12F4 {
+    I12F4::from_bits(if texels > 2047 {
+        2047 * 16
+    } else if texels < -2048 {
+        i16::MIN
+    } else {
+        texels * 16
+    })
+}
+
+/// Borrowed vertices and the triangles between them, checked when made.
+///
+/// The front of a triangle is the side from which its vertices run counter-clockwise.
+///
+/// ```
+/// use fixel::{Mesh, Vertex};
+/// const TRIANGLE: Mesh = Mesh::new(
+///     &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+///     &[[0, 1, 2]],
+/// );
+/// assert_eq!(TRIANGLE.triangles().len(), 1);
+/// ```
+///
+/// A bad index does not compile:
+///
+/// ```compile_fail
+/// # use fixel::{Mesh, Vertex};
+/// const BAD: Mesh = Mesh::new(&[Vertex::new(0.0, 0.0, 0.0)], &[[0, 0, 1]]);
+/// # let _ = BAD;
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    vertices: &'a [Vertex],
+    triangles: &'a [[u16; 3]],
+}
+
+impl<'a> Mesh<'a> {
+    /// A mesh in a `const`: a bad index is a compile error.
+    ///
+    /// # Panics
+    ///
+    /// Outside a `const`, on a triangle that names a vertex that is not there. See [`Mesh::try_new`].
+    #[must_use]
+    pub const fn new(vertices: &'a [Vertex], triangles: &'a [[u16; 3]]) -> Self {
+        match Self::try_new(vertices, triangles) {
+            Ok(mesh) => mesh,
+            Err(_) => panic!("a triangle of the mesh names a vertex that is not there"),
+        }
+    }
+
+    /// A mesh from data that comes at run time.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError`] for the first triangle that names a vertex that is not there.
+    pub const fn try_new(vertices: &'a [Vertex], triangles: &'a [[u16; 3]]) -> Result<Self, MeshError> {
+        let mut triangle = 0;
+        while triangle < triangles.len() {
+            let mut corner = 0;
+            while corner < 3 {
+                let index = triangles[triangle][corner];
+                if index as usize >= vertices.len() {
+                    return Err(MeshError { triangle, index });
+                }
+                corner += 1;
+            }
+            triangle += 1;
+        }
+        Ok(Self { vertices, triangles })
+    }
+
+    /// The vertices.
+    #[must_use]
+    pub const fn vertices(&self) -> &'a [Vertex] {
+        self.vertices
+    }
+
+    /// The triangles, three indices into [`Mesh::vertices`] each.
+    #[must_use]
+    pub const fn triangles(&self) -> &'a [[u16; 3]] {
+        self.triangles
+    }
+
+    /// The three vertices of each triangle. Every index was checked when the mesh was made.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [&'a Vertex; 3]> {
+        let vertices = self.vertices;
+        self.triangles.iter().filter_map(move |&[a, b, c]| {
+            Some([
+                vertices.get(usize::from(a))?,
+                vertices.get(usize::from(b))?,
+                vertices.get(usize::from(c))?,
+            ])
+        })
+    }
+}
+
+/// A triangle names a vertex that is not there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshError {
+    /// Which triangle, from 0.
+    pub triangle: usize,
+    /// The index that is too large.
+    pub index: u16,
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "triangle {} names vertex {}, which is not there", self.triangle, self.index)
+    }
+}
+
+impl core::error::Error for MeshError {}

@@ -1,0 +1,186 @@
+//! Textures: power-of-two pictures in flash.
+
+use core::fmt;
+
+/// What a texture shows outside its borders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// Itself again and again, to negative coordinates too.
+    #[default]
+    Repeat,
+    /// Its border texels.
+    Clamp,
+}
+
+/// A borrowed RGB565 picture of 2^w × 2^h texels, rows from the top, w and h from 0 to 10.
+///
+/// Texel (i, j) covers the coordinates i … i + 1, j … j + 1.
+///
+/// ```
+/// use fixel::{Texture, texels};
+/// // In firmware the bytes come from `include_bytes!`, and this runs in the compiler.
+/// static CHECKS: Texture = Texture::new(&texels::<4>(&[0xff, 0xff, 0, 0, 0, 0, 0xff, 0xff]), 1, 1);
+/// assert_eq!(CHECKS.size().width, 2);
+/// ```
+///
+/// A wrong length does not compile:
+///
+/// ```compile_fail
+/// # use fixel::Texture;
+/// const BAD: Texture = Texture::new(&[0; 63], 3, 3);
+/// # let _ = BAD;
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Texture<'a> {
+    /// Native-endian RGB565 words.
+    texels: &'a [u16],
+    log2_width: u8,
+    log2_height: u8,
+    wrap: Wrap,
+}
+
+/// The largest log₂ of a side.
+const MAX_LOG2: u32 = 10;
+
+impl<'a> Texture<'a> {
+    /// A texture in a `const` or `static`: a wrong length is a compile error.
+    ///
+    /// # Panics
+    ///
+    /// Outside a `const`, as [`Texture::try_new`] fails.
+    #[must_use]
+    pub const fn new(texels: &'a [u16], log2_width: u32, log2_height: u32) -> Self {
+        match Self::try_new(texels, log2_width, log2_height) {
+            Ok(texture) => texture,
+            Err(TextureError::TooLarge) => panic!("a side of a texture is at most 1024 texels"),
+            Err(TextureError::Length { .. }) => panic!("the number of texels is not width times height"),
+        }
+    }
+
+    /// A texture from data that comes at run time.
+    ///
+    /// # Errors
+    ///
+    /// [`TextureError`] if a side is longer than 1024 or `texels` is not width × height long.
+    pub const fn try_new(texels: &'a [u16], log2_width: u32, log2_height: u32) -> Result<Self, TextureError> {
+        if log2_width > MAX_LOG2 || log2_height > MAX_LOG2 {
+            return Err(TextureError::TooLarge);
+        }
+        let expected = 1 << (log2_width + log2_height);
+        if texels.len() != expected {
+            return Err(TextureError::Length { expected, found: texels.len() });
+        }
+        Ok(Self { texels, log2_width: log2_width as u8, log2_height: log2_height as u8, wrap: Wrap::Repeat })
+    }
+
+    /// The same texels with another behaviour outside the borders.
+    #[must_use]
+    pub const fn wrap(self, wrap: Wrap) -> Self {
+        Self { wrap, ..self }
+    }
+
+    /// Width and height in texels.
+    #[must_use]
+    pub const fn size(&self) -> embedded_graphics::geometry::Size {
+        embedded_graphics::geometry::Size::new(1 << self.log2_width, 1 << self.log2_height)
+    }
+
+    pub(crate) const fn wrapping(&self) -> Wrap {
+        self.wrap
+    }
+
+    /// The texel at whole texel coordinates of any size, repeated.
+    #[inline]
+    pub(crate) fn fetch_repeat(&self, u: i32, v: i32) -> u16 {
+        let u = u as u32 & ((1 << self.log2_width) - 1);
+        let v = v as u32 & ((1 << self.log2_height) - 1);
+        self.texel(u, v)
+    }
+
+    /// The texel at whole texel coordinates of any size, the border beyond it.
+    #[inline]
+    pub(crate) fn fetch_clamp(&self, u: i32, v: i32) -> u16 {
+        let u = u.clamp(0, (1 << self.log2_width) - 1) as u32;
+        let v = v.clamp(0, (1 << self.log2_height) - 1) as u32;
+        self.texel(u, v)
+    }
+
+    #[inline]
+    fn texel(&self, u: u32, v: u32) -> u16 {
+        // Always inside: u and v were wrapped and the length was checked.
+        self.texels.get(((v << self.log2_width) + u) as usize).copied().unwrap_or(0)
+    }
+}
+
+/// What is wrong with a texture's data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextureError {
+    /// A side is longer than 1024 texels.
+    TooLarge,
+    /// The number of texels is not width × height.
+    Length {
+        /// Width × height.
+        expected: usize,
+        /// The number of texels given.
+        found: usize,
+    },
+}
+
+impl fmt::Display for TextureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge => write!(f, "a side of a texture is at most 1024 texels"),
+            Self::Length { expected, found } => {
+                write!(f, "the texture needs {expected} texels, but {found} were given")
+            }
+        }
+    }
+}
+
+impl core::error::Error for TextureError {}
+
+/// Turns the little-endian bytes of an RGB565 picture into its `N` texels, in the compiler:
+/// `texels::<1024>(include_bytes!("brick.rgb565"))`.
+///
+/// # Panics
+///
+/// If there are not 2·`N` bytes; in a `const` or `static` that is a compile error.
+#[must_use]
+pub const fn texels<const N: usize>(bytes: &[u8]) -> [u16; N] {
+    assert!(bytes.len() == 2 * N, "an RGB565 picture has two bytes for each texel");
+    let mut texels = [0; N];
+    let mut i = 0;
+    while i < N {
+        texels[i] = u16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]);
+        i += 1;
+    }
+    texels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wraps_negative_and_huge_coordinates() {
+        let texels: [u16; 8] = core::array::from_fn(|i| i as u16);
+        let texture = Texture::new(&texels, 2, 1);
+        assert_eq!(texture.fetch_repeat(-1, 0), 3);
+        assert_eq!(texture.fetch_repeat(-4, -1), 4);
+        assert_eq!(texture.fetch_repeat(5, 2), 1);
+        assert_eq!(texture.fetch_repeat(i32::MIN, i32::MAX), 4);
+        assert_eq!(texture.fetch_clamp(-1, 0), 0);
+        assert_eq!(texture.fetch_clamp(i32::MAX, i32::MAX), 7);
+        assert_eq!(texture.fetch_clamp(i32::MIN, 1), 4);
+    }
+
+    #[test]
+    fn errors_are_typed() {
+        assert_eq!(
+            Texture::try_new(&[0; 3], 1, 1).unwrap_err(),
+            TextureError::Length { expected: 4, found: 3 }
+        );
+        assert_eq!(Texture::try_new(&[0; 4], 11, 0).unwrap_err(), TextureError::TooLarge);
+        assert_eq!(Texture::try_new(&[0; 4], u32::MAX, u32::MAX).unwrap_err(), TextureError::TooLarge);
+    }
+}

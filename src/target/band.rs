@@ -1,0 +1,291 @@
+//! A band: some rows of the screen, or all of them.
+
+use super::depth::DepthFormat;
+use super::format::PixelFormat;
+use crate::num::U1F31;
+use crate::pipeline::{Shader, Span, TriangleSetup};
+use core::convert::Infallible;
+use core::fmt;
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Dimensions, Point, Size};
+use embedded_graphics::image::GetPixel;
+use embedded_graphics::primitives::Rectangle;
+
+/// A strip of rows of a screen, or the whole screen, in memory that the user owns.
+///
+/// It is an embedded-graphics [`DrawTarget`] in the coordinates of the whole screen: what lies
+/// outside its rows is left out. Its contents are as they were given: clear them first.
+///
+/// ```
+/// use fixel::{Band, Depth16};
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
+/// let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?.starting_at(32);
+/// band.clear_depth();
+/// let Ok(()) = band.clear(Rgb565::BLUE);
+/// assert_eq!(band.bounding_box().top_left, Point::new(0, 32));
+/// # Ok::<(), fixel::TargetError>(())
+/// ```
+pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
+    /// Rows one after another, width · height words.
+    pixels: &'a mut [F::Word],
+    /// Likewise.
+    depth: &'a mut [D::Word],
+    width: u16,
+    height: u16,
+    /// The screen row of the first row.
+    top: u16,
+}
+
+/// The longest side of a target: what a guard band that fits `i32` edge functions leaves room for.
+const MAX_SIDE: u32 = 1023;
+
+impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
+    /// A band of `size` pixels in the first width × height words of the two slices.
+    ///
+    /// [`NoDepth`](super::NoDepth) takes a slice of `()`, of no bytes: `&mut [(); N]`.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError`] if a side is longer than 1023 or a slice too short.
+    pub fn new(size: Size, pixels: &'a mut [F::Word], depth: &'a mut [D::Word]) -> Result<Self, TargetError> {
+        if size.width > MAX_SIDE || size.height > MAX_SIDE {
+            return Err(TargetError::TooLarge);
+        }
+        let needed = (size.width * size.height) as usize;
+        let found = pixels.len();
+        let pixels = pixels.get_mut(..needed).ok_or(TargetError::Pixels { needed, found })?;
+        let found = depth.len();
+        let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
+        Ok(Self { pixels, depth, width: size.width as u16, height: size.height as u16, top: 0 })
+    }
+
+    /// The same memory as the rows from `row` on of a taller screen (at most 1023).
+    #[must_use]
+    pub fn starting_at(mut self, row: u32) -> Self {
+        self.move_to(row);
+        self
+    }
+
+    /// Makes this the band of the rows from `row` on (at most 1023); the contents stay.
+    pub fn move_to(&mut self, row: u32) {
+        self.top = row.min(MAX_SIDE) as u16;
+    }
+
+    /// Forgets all depths, so that whatever is drawn next is seen.
+    pub fn clear_depth(&mut self) {
+        self.depth.fill(D::CLEAR);
+    }
+
+    /// The pixels' words, row after row.
+    #[must_use]
+    pub fn pixels(&self) -> &[F::Word] {
+        self.pixels
+    }
+
+    /// The depths, row after row.
+    #[must_use]
+    pub fn depth(&self) -> &[D::Word] {
+        self.depth
+    }
+
+    /// The pixels' colours, row after row, for
+    /// [`fill_contiguous`](DrawTarget::fill_contiguous) of a display.
+    #[must_use]
+    pub fn colors(&self) -> impl ExactSizeIterator<Item = F::Color> {
+        self.pixels.iter().map(|&word| F::decode(word))
+    }
+
+    /// The pixels' bytes as they stand in memory, for a display's bus.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8]
+    where
+        F::Word: bytemuck::NoUninit,
+    {
+        bytemuck::must_cast_slice(self.pixels)
+    }
+
+    /// Draws what a triangle covers of this band.
+    pub(crate) fn draw<S: Shader<F>>(&mut self, setup: &TriangleSetup, shader: &S) {
+        let top = i32::from(self.top);
+        let (width, height) = (usize::from(self.width), i32::from(self.height));
+        setup.rows(top..top + height, 0..i32::from(self.width), |y, columns| {
+            let row = (y - top) as usize * width;
+            let words = row + columns.start as usize..row + columns.end as usize;
+            let (Some(pixels), Some(depth)) = (self.pixels.get_mut(words.clone()), self.depth.get_mut(words))
+            else {
+                return;
+            };
+            let span = Span::new(setup, columns.start, y);
+            if D::ALWAYS_PASSES {
+                shader.span(&span, pixels);
+            } else {
+                draw_visible::<F, D, S>(&span, pixels, depth, shader);
+            }
+        });
+    }
+}
+
+/// Tests depth along a span and draws each run of pixels that passes.
+fn draw_visible<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
+    span: &Span<'_>,
+    pixels: &mut [F::Word],
+    depth: &mut [D::Word],
+    shader: &S,
+) {
+    let (mut near_w, step) = span.depth();
+    let mut draw = |start: usize, end: usize| {
+        if let Some(run) = pixels.get_mut(start..end) {
+            shader.span(&Span::new(span.setup(), span.x() + start as i32, span.y()), run);
+        }
+    };
+    let mut run_start = None;
+    for (i, stored) in depth.iter_mut().enumerate() {
+        match (D::test(stored, U1F31::from_bits(near_w)), run_start) {
+            (true, None) => run_start = Some(i),
+            (false, Some(start)) => {
+                draw(start, i);
+                run_start = None;
+            }
+            _ => {}
+        }
+        near_w = near_w.wrapping_add_signed(step);
+    }
+    if let Some(start) = run_start {
+        draw(start, depth.len());
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
+    /// The words of the part of a row (of the screen) from column `x` on, `width` long; the
+    /// rectangle that they come from lies inside.
+    fn row_mut(&mut self, x: i32, y: i32, width: u32) -> &mut [F::Word] {
+        let start = (y - i32::from(self.top)) as usize * usize::from(self.width) + x as usize;
+        self.pixels.get_mut(start..start + width as usize).unwrap_or_default()
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> Dimensions for Band<'_, F, D> {
+    fn bounding_box(&self) -> Rectangle {
+        Rectangle::new(Point::new(0, self.top.into()), Size::new(self.width.into(), self.height.into()))
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> DrawTarget for Band<'_, F, D> {
+    type Color = F::Color;
+    type Error = Infallible;
+
+    fn draw_iter<I>(&mut self, pixels: I) -> Result<(), Infallible>
+    where
+        I: IntoIterator<Item = Pixel<F::Color>>,
+    {
+        let area = self.bounding_box();
+        for Pixel(point, color) in pixels {
+            if area.contains(point) {
+                self.row_mut(point.x, point.y, 1).fill(F::encode(color));
+            }
+        }
+        Ok(())
+    }
+
+    fn fill_contiguous<I>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible>
+    where
+        I: IntoIterator<Item = F::Color>,
+    {
+        let mut colors = colors.into_iter();
+        let inside = self.bounding_box().intersection(area);
+        if inside.is_zero_sized() {
+            return Ok(());
+        }
+        let skipped = inside.top_left - area.top_left;
+        let (before, width) = (skipped.x as usize, area.size.width as usize);
+        let after = width - before - inside.size.width as usize;
+        // Rows above, then for each row what stands left and right of it.
+        let mut gap = (skipped.y as usize).saturating_mul(width).saturating_add(before);
+        for y in inside.rows() {
+            if gap > 0 && colors.nth(gap - 1).is_none() {
+                return Ok(());
+            }
+            for (word, color) in
+                self.row_mut(inside.top_left.x, y, inside.size.width).iter_mut().zip(&mut colors)
+            {
+                *word = F::encode(color);
+            }
+            gap = after + before;
+        }
+        Ok(())
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, color: F::Color) -> Result<(), Infallible> {
+        let inside = self.bounding_box().intersection(area);
+        for y in inside.rows() {
+            self.row_mut(inside.top_left.x, y, inside.size.width).fill(F::encode(color));
+        }
+        Ok(())
+    }
+
+    fn clear(&mut self, color: F::Color) -> Result<(), Infallible> {
+        self.pixels.fill(F::encode(color));
+        Ok(())
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> GetPixel for Band<'_, F, D> {
+    type Color = F::Color;
+
+    fn pixel(&self, point: Point) -> Option<F::Color> {
+        if !self.bounding_box().contains(point) {
+            return None;
+        }
+        let index = (point.y as usize - usize::from(self.top)) * usize::from(self.width) + point.x as usize;
+        self.pixels.get(index).map(|&word| F::decode(word))
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> fmt::Debug for Band<'_, F, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Band")
+            .field("width", &self.width)
+            .field("height", &self.height)
+            .field("top", &self.top)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What is wrong with a target's size or memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetError {
+    /// A side is longer than 1023 pixels.
+    TooLarge,
+    /// There are too few pixel words.
+    Pixels {
+        /// Width × height.
+        needed: usize,
+        /// The words given.
+        found: usize,
+    },
+    /// There are too few depth words.
+    Depth {
+        /// Width × height.
+        needed: usize,
+        /// The words given.
+        found: usize,
+    },
+}
+
+impl fmt::Display for TargetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge => write!(f, "a side of a target is at most 1023 pixels"),
+            Self::Pixels { needed, found } => {
+                write!(f, "the target needs {needed} pixels, but {found} were given")
+            }
+            Self::Depth { needed, found } => {
+                write!(f, "the target needs {needed} depths, but {found} were given")
+            }
+        }
+    }
+}
+
+impl core::error::Error for TargetError {}

@@ -1,0 +1,82 @@
+//! Pixel formats: how a colour stands in memory.
+
+use core::marker::PhantomData;
+use embedded_graphics::pixelcolor::{PixelColor, Rgb565, raw::RawU16};
+use embedded_graphics::prelude::RawData;
+
+/// How a colour stands in memory.
+///
+/// A colour type that is its own format stands as a native word; [`BigEndian`] is the byte order
+/// that most SPI displays want, so that rows can be sent as they are.
+pub trait PixelFormat {
+    /// One pixel in memory.
+    type Word: Copy;
+    /// The colour that 2D drawing uses.
+    type Color: PixelColor;
+
+    /// A colour's word.
+    fn encode(color: Self::Color) -> Self::Word;
+
+    /// A word's colour.
+    fn decode(word: Self::Word) -> Self::Color;
+
+    /// The word of a native RGB565 number, as textures hold it.
+    fn rgb565(bits: u16) -> Self::Word;
+
+    /// The word of three 8-bit channels.
+    fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
+}
+
+impl PixelFormat for Rgb565 {
+    type Word = u16;
+    type Color = Self;
+
+    #[inline]
+    fn encode(color: Self) -> u16 {
+        RawU16::from(color).into_inner()
+    }
+
+    #[inline]
+    fn decode(word: u16) -> Self {
+        RawU16::new(word).into()
+    }
+
+    #[inline]
+    fn rgb565(bits: u16) -> u16 {
+        bits
+    }
+
+    #[inline]
+    fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
+        (u16::from(red) & 0xf8) << 8 | (u16::from(green) & 0xfc) << 3 | u16::from(blue) >> 3
+    }
+}
+
+/// A 16-bit format with its bytes in big-endian order on every machine.
+#[derive(Clone, Copy, Debug)]
+pub struct BigEndian<F>(PhantomData<F>);
+
+impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
+    type Word = u16;
+    type Color = F::Color;
+
+    #[inline]
+    fn encode(color: F::Color) -> u16 {
+        F::encode(color).to_be()
+    }
+
+    #[inline]
+    fn decode(word: u16) -> F::Color {
+        F::decode(u16::from_be(word))
+    }
+
+    #[inline]
+    fn rgb565(bits: u16) -> u16 {
+        F::rgb565(bits).to_be()
+    }
+
+    #[inline]
+    fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
+        F::rgb888(red, green, blue).to_be()
+    }
+}
