@@ -1,6 +1,7 @@
 //! fixel draws perspective-correct, textured 3D triangles on microcontrollers, in integers, into
 //! any [embedded-graphics](embedded_graphics) display.
 #![no_std]
+#![warn(unreachable_pub)]
 
 #[cfg(test)]
 extern crate std;
