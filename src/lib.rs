@@ -1,5 +1,76 @@
-//! fixel draws perspective-correct, textured 3D triangles on microcontrollers, in integers, into
-//! any [embedded-graphics](embedded_graphics) display.
+//! fixel ("fixed-point pixels") draws perspective-correct, textured 3D triangles on
+//! microcontrollers, in integers, into any [embedded-graphics](embedded_graphics) display.
+//!
+//! # The contract
+//!
+//! | | promise |
+//! |---|---|
+//! | axes | right-handed; +x right, +y up, the camera looks along −z; screen (0, 0) top left, y down, pixel centres at +½ |
+//! | facing | counter-clockwise on the screen is the front; [`Cull`] leaves out backs (default), fronts, or none |
+//! | positions | snapped to 1/16 pixel; no vertex is rounded to whole pixels, anywhere |
+//! | coverage | top-left rule, exact: of the triangles that share an edge or a vertex exactly one covers a pixel centre that lies on it. No cracks, no double pixels |
+//! | perspective | [`QuarterPixel`], the default: every attribute is within ¼ pixel of exact, that is, its error divided by its largest exact change over one pixel step in x or y (or by 1 texel, or 1/255, if that is more). [`Exact`]: within 0.02. [`Affine`]: unbounded. No attribute leaves the range of its triangle's three vertices |
+//! | depth | 16-bit near/w, 1 … 65535, 0 is cleared; larger is nearer, strictly nearer wins, ties keep what was drawn first |
+//! | determinism | the same bytes on every machine and for every band height |
+//! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |
+//! | memory | no `alloc`, no recursion; stack of a draw call ≤ 1 KiB |
+//! | safety | no `unsafe`; no input panics a release build, none writes outside the target, none overflows |
+//! | failure | bad assets are a compile error through `const fn new` (meant for `const`; elsewhere it panics, documented, the only exception) and a typed error through `try_new`; targets are at most 1023 × 1023, a typed error beyond |
+//!
+//! # Example
+//!
+//! One textured triangle and a line of text, drawn at once into a [`Band`] that is the whole screen:
+//!
+//! ```
+//! use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_10X20};
+//! use embedded_graphics::{pixelcolor::Rgb565, prelude::*, text::Text};
+//! use fixel::prelude::*;
+//!
+//! static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1); // 2 × 2 texels of RGB565
+//! const TRIANGLE: Mesh = Mesh::new(
+//!     &[
+//!         Vertex::new(-1.0, -1.0, 0.0).uv(0, 16),
+//!         Vertex::new(1.0, -1.0, 0.0).uv(16, 16),
+//!         Vertex::new(0.0, 1.0, 0.0).uv(8, 0),
+//!     ],
+//!     &[[0, 1, 2]], // a bad index here does not compile
+//! );
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (mut pixels, mut depth) = ([0; 240 * 240], [0; 240 * 240]);
+//! let mut band = Band::<Rgb565, Depth16>::new(Size::new(240, 240), &mut pixels, &mut depth)?;
+//!
+//! let camera = Camera::perspective(Turn::from_degrees(60), band.size()).at(Vec3::lit(0.0, 0.0, 2.5));
+//! let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(50));
+//! camera.draw(&TRIANGLE, &pose, &Material::textured(&CHECKS), &mut band);
+//!
+//! let gold = MonoTextStyle::new(&FONT_10X20, Rgb565::CSS_GOLD);
+//! Text::new("hello", Point::new(8, 24), gold).draw(&mut band)?; // 2D on top just works
+//! # assert_eq!(band.depth().iter().filter(|&&depth| depth > 0).count(), 10_103);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # How it works
+//!
+//! Data flows one way, scene → pipeline → target, and every arrow of the pipeline is one small struct:
+//!
+//! ```text
+//!            transform         clip            setup            span      shade
+//! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
+//! ```
+//!
+//! - **transform** multiplies mesh positions by one matrix whose numbers share an exponent.
+//! - **clip** cuts at the near plane and at a guard band far outside the screen, and divides by w with
+//!   one reciprocal.
+//! - **setup** holds the edge functions of the triangle (signed areas: divided by the triangle's own they are
+//!   the barycentric weights) and, for every attribute u, the integers q = near/w and (u − u₀)·q, which
+//!   are linear on the screen where u itself is not.
+//! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
+//! - **shade** divides, at every pixel or only as often as ¼ pixel asks for, by a table of reciprocals.
+//!
+//! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
+//! particular to a surface is a [`Shader`], of which [`Material`] is the one that comes with the crate.
 #![no_std]
 #![warn(unreachable_pub)]
 
@@ -29,3 +100,8 @@ pub mod prelude {
         Band, Camera, Cull, Depth16, Material, Mesh, NoDepth, Pose, Texture, Turn, Vec3, Vertex, Wrap, texels,
     };
 }
+
+/// README's code is compiled and run too.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -16,6 +16,7 @@ use super::transform::{ClipVertex, focal_log2};
 use crate::math::recip::Reciprocal;
 use crate::num::{I12F4, I16F16, U1F31, U8F8, shift_round, wide};
 use crate::scene::Projection;
+use core::ops::RangeInclusive;
 use heapless::Vec;
 
 /// A vertex on the screen, with all that is linear before or after the division by w.
@@ -39,10 +40,10 @@ const _: () = assert!(size_of::<ScreenVertex>() == 24);
 
 /// The guard band of [`ScreenVertex`] positions, in 1/16 px: its width and height of 2047 px are
 /// the most with which every edge function fits an `i32`.
-const GUARD_BAND: core::ops::RangeInclusive<i64> = -1024 * 16..=1023 * 16;
+const GUARD_BAND: RangeInclusive<i64> = -1024 * 16..=1023 * 16;
 
 /// Where clipping cuts: a pixel inside the guard band, so that rounding stays in it.
-const CUT: core::ops::RangeInclusive<i64> = -1023 * 16..=1022 * 16;
+const CUT: RangeInclusive<i64> = -1023 * 16..=1022 * 16;
 
 const MAX_TEXELS: i32 = 8192 << 16;
 
@@ -54,7 +55,7 @@ impl ScreenVertex {
 }
 
 /// One vertex more for each of the five planes.
-type Polygon = Vec<ClipVertex, 8>;
+pub(super) type Polygon = Vec<ClipVertex, 8>;
 
 /// Clips and projects.
 pub(super) struct Clip {
@@ -94,26 +95,34 @@ impl Clip {
     }
 
     /// Hands on what is left of a triangle: nothing, itself, or up to six pieces.
-    pub(super) fn clip(&self, corners: [ClipVertex; 3], mut draw: impl FnMut(&[ScreenVertex; 3])) {
-        if let [Some(a), Some(b), Some(c)] = corners.each_ref().map(|vertex| self.project_inside(vertex)) {
-            draw(&[a, b, c]);
-        } else {
-            self.cut(corners, &mut draw);
+    #[inline]
+    pub(super) fn clip(&self, polygon: &mut Polygon, mut draw: impl FnMut(&[ScreenVertex; 3])) {
+        let mut triangle = [ScreenVertex::default(); 3];
+        let inside =
+            triangle.iter_mut().zip(&*polygon).all(|(vertex, corner)| self.project(corner, &CUT, vertex));
+        if !inside {
+            self.cut(polygon);
+        }
+        // A triangle, or a fan around the first vertex.
+        let mut count = 0;
+        for corner in &*polygon {
+            if (inside && count < 3) || self.project(corner, &GUARD_BAND, &mut triangle[count.min(2)]) {
+                count += 1;
+                if count >= 3 {
+                    draw(&triangle);
+                    triangle[1] = triangle[2];
+                }
+            }
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn cut(&self, corners: [ClipVertex; 3], draw: &mut impl FnMut(&[ScreenVertex; 3])) {
-        let mut polygon: Polygon = corners.into_iter().collect();
-        cut_by(
-            &mut polygon,
-            |vertex| vertex.w >= self.near,
-            |vertex| i64::from(vertex.w) - i64::from(self.near),
-        );
+    fn cut(&self, polygon: &mut Polygon) {
+        cut_by(polygon, |vertex| vertex.w >= self.near, |vertex| i64::from(vertex.w) - i64::from(self.near));
         for (axis, side) in SIDES {
             cut_by(
-                &mut polygon,
+                polygon,
                 |vertex| {
                     let at = self.screen(vertex, axis, Reciprocal::precise(vertex.w as u32));
                     if side < 0 { at >= side } else { at <= side }
@@ -125,13 +134,6 @@ impl Clip {
                 },
             );
         }
-        let mut vertices = polygon.iter().filter_map(|vertex| self.project(vertex));
-        if let (Some(first), Some(mut last)) = (vertices.next(), vertices.next()) {
-            for next in vertices {
-                draw(&[first, last, next]);
-                last = next;
-            }
-        }
     }
 
     /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest.
@@ -141,35 +143,29 @@ impl Clip {
         shift_round(wide(x, w.mantissa), shift as u32) + i64::from(self.center[axis])
     }
 
-    /// The vertex on the screen, if clipping has nothing to do with it.
-    fn project_inside(&self, vertex: &ClipVertex) -> Option<ScreenVertex> {
+    /// Puts the vertex on the screen; false, and nothing done, if it lies before the near plane or its
+    /// position (1/16 px) outside `range`.
+    #[inline(never)]
+    fn project(&self, vertex: &ClipVertex, range: &RangeInclusive<i64>, to: &mut ScreenVertex) -> bool {
         if vertex.w < self.near {
-            return None;
+            return false;
         }
         let w = Reciprocal::precise(vertex.w as u32);
         let (x, y) = (self.screen(vertex, 0, w), self.screen(vertex, 1, w));
-        (CUT.contains(&x) && CUT.contains(&y)).then(|| self.finish(vertex, x, y, w))
-    }
-
-    /// The vertex on the screen, if it is in the guard band. Clipped vertices are, but for the
-    /// coarsest of numbers.
-    fn project(&self, vertex: &ClipVertex) -> Option<ScreenVertex> {
-        let w = Reciprocal::precise(vertex.w as u32);
-        let (x, y) = (self.screen(vertex, 0, w), self.screen(vertex, 1, w));
-        (GUARD_BAND.contains(&x) && GUARD_BAND.contains(&y)).then(|| self.finish(vertex, x, y, w))
-    }
-
-    fn finish(&self, vertex: &ClipVertex, x: i64, y: i64, w: Reciprocal) -> ScreenVertex {
+        if !range.contains(&x) || !range.contains(&y) {
+            return false;
+        }
         let shift = (self.near_shift - w.zeros as i32).clamp(0, 63);
         let q = shift_round(wide(self.near_mantissa, w.mantissa), shift as u32);
-        ScreenVertex {
+        *to = ScreenVertex {
             x: I12F4::from_bits(x as i16),
             y: I12F4::from_bits(y as i16),
             q: U1F31::from_bits(q.clamp(1, i64::from(i32::MAX)) as u32),
             u: vertex.u,
             v: vertex.v,
             color: vertex.color,
-        }
+        };
+        true
     }
 }
 
@@ -185,12 +181,15 @@ fn cut_by(
         return;
     };
     // The first vertex inside that follows one outside.
-    let Some(run) = (1..count).find(|i| inside(&polygon[(first_out + i) % count])) else {
+    let Some(run) = (first_out..count).chain(0..first_out).find(|&i| inside(&polygon[i])) else {
         polygon.clear();
         return;
     };
+    // To the front with it. Three reversals rotate; the library's way takes more stack and flash.
+    polygon[..run].reverse();
+    polygon[run..].reverse();
+    polygon.reverse();
     // Inside: 0 … stay; outside: stay … count.
-    polygon.rotate_left((first_out + run) % count);
     let stay = polygon.iter().position(|vertex| !inside(vertex)).unwrap_or(count);
     let cross =
         |from: &ClipVertex, to: &ClipVertex| between(from, to, distance(from).max(0), -distance(to).min(0));
@@ -204,7 +203,7 @@ fn cut_by(
 
 /// The point that divides an edge as `before` to `behind`, computed from the end `inside`.
 fn between(inside: &ClipVertex, outside: &ClipVertex, before: i64, behind: i64) -> ClipVertex {
-    // t = before / (before + behind) in 31 bits.
+    // t = before / (before + behind) in 30 bits.
     let whole = before + behind;
     let t = if whole == 0 {
         0
@@ -212,13 +211,10 @@ fn between(inside: &ClipVertex, outside: &ClipVertex, before: i64, behind: i64) 
         let shift = whole.leading_zeros() as i32 - 33; // whole becomes 2³⁰ … 2³¹ − 1
         let normal = |value: i64| (if shift >= 0 { value << shift } else { value >> -shift }) as i32;
         let reciprocal = Reciprocal::precise(normal(whole) as u32);
-        (wide(normal(before), reciprocal.mantissa) >> 30).min(1 << 31)
+        ((wide(normal(before), reciprocal.mantissa) >> 31) as i32).min(1 << 30)
     };
-    // Weights 2³¹ − t and t: no difference is taken that could overflow.
-    let mix = |a: i32, b: i32| {
-        let product = i64::from(a) * ((1 << 31) - t) + i64::from(b) * t;
-        ((product + (1 << 30)) >> 31) as i32
-    };
+    // Weights 2³⁰ − t and t: no difference is taken that could overflow.
+    let mix = |a: i32, b: i32| ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32;
     ClipVertex {
         x: mix(inside.x, outside.x),
         y: mix(inside.y, outside.y),

@@ -17,34 +17,36 @@ pub use shade::{Affine, Exact, Inputs, Quality, QuarterPixel, Shader, Varying};
 pub use span::Span;
 
 use crate::math::Pose;
-use crate::scene::{Projection, Vertex};
+use crate::scene::{Mesh, Projection};
 use crate::target::{Band, DepthFormat, PixelFormat};
-use clip::Clip;
+use clip::{Clip, Polygon};
 use core::fmt;
+use setup::Oriented;
 pub(crate) use setup::TriangleSetup;
 use transform::ToClip;
 
-/// The pipeline of one mesh in one pose before one camera, from vertex to pixel.
-pub(crate) struct Pipeline {
-    to_clip: ToClip,
-    clip: Clip,
-}
-
-impl Pipeline {
-    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        let to_clip = ToClip::new(projection, camera, pose);
-        let clip = Clip::new(projection, to_clip.unit_bits());
-        Self { to_clip, clip }
-    }
-
-    pub(crate) fn draw<F, D, S>(&self, corners: [&Vertex; 3], shader: &S, band: &mut Band<'_, F, D>)
-    where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
-    {
-        let corners = corners.map(|vertex| self.to_clip.transform(vertex));
-        self.clip.clip(corners, |triangle| draw_checked(triangle, shader.cull(), shader, band));
+/// Draws a mesh in one pose before one camera, from vertex to pixel.
+pub(crate) fn draw<F, D, S>(
+    mesh: &Mesh<'_>,
+    projection: &Projection,
+    camera: &Pose,
+    pose: &Pose,
+    shader: &S,
+    band: &mut Band<'_, F, D>,
+) where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    let to_clip = ToClip::new(projection, camera, pose);
+    let clip = Clip::new(projection, to_clip.unit_bits());
+    for corners in mesh.corners() {
+        let mut polygon = Polygon::new();
+        for vertex in corners {
+            // There is room for eight.
+            let _ = polygon.push(to_clip.transform(vertex));
+        }
+        clip.clip(&mut polygon, |triangle| draw_checked(triangle, shader.cull(), shader, band));
     }
 }
 
@@ -74,13 +76,16 @@ where
     Ok(())
 }
 
+#[inline(never)]
 fn draw_checked<F, D, S>(vertices: &[ScreenVertex; 3], cull: Cull, shader: &S, band: &mut Band<'_, F, D>)
 where
     F: PixelFormat,
     D: DepthFormat,
     S: Shader<F>,
 {
-    if let Some(setup) = TriangleSetup::new(vertices, cull, shader.inputs(), S::Quality::PERSPECTIVE) {
+    if let Some(triangle) = Oriented::new(vertices, cull) {
+        let mut setup = TriangleSetup::new(&triangle);
+        setup.set_planes(&triangle, shader.inputs(), S::Quality::PERSPECTIVE);
         band.draw(&setup, shader);
     }
 }

@@ -80,8 +80,10 @@ pub(super) struct Plane {
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    pub(super) plane: Plane,
-    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q).
+    /// (u − u₀)·q at corners 1 and 2 (it is 0 at corner 0), in units of 2^`exponent` · (I16F16 · unit of q).
+    rise: [i32; 2],
+    /// One pixel to the right.
+    pub(super) step: i32,
     exponent: i32,
     /// u₀, I16F16.
     base: i32,
@@ -91,6 +93,12 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
+    /// (u − u₀)·q where the weights are taken.
+    #[inline]
+    pub(super) fn at(&self, weights: Weights) -> i32 {
+        weights.of(self.rise)
+    }
+
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
     #[inline]
     pub(super) fn resolve(&self, value: i32, q: Reciprocal) -> i32 {
@@ -111,55 +119,73 @@ impl Attribute {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights([i32; 2]);
 
+const _: () = assert!(size_of::<TriangleSetup>() == 208);
+
 impl Plane {
     /// The value where the weights are taken.
     #[inline]
     pub(super) fn at(&self, weights: Weights) -> u32 {
-        let rise = |i: usize| mul_round::<31>(weights.0[i], self.rise[i]);
-        self.origin.wrapping_add_signed(rise(0)).wrapping_add_signed(rise(1))
+        self.origin.wrapping_add_signed(weights.of(self.rise))
     }
 }
 
-impl TriangleSetup {
+impl Weights {
+    #[inline]
+    fn of(self, rise: [i32; 2]) -> i32 {
+        mul_round::<31>(self.0[0], rise[0]).wrapping_add(mul_round::<31>(self.0[1], rise[1]))
+    }
+}
+
+/// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
+pub(super) struct Oriented<'a> {
+    vertices: [&'a ScreenVertex; 3],
+    area: u32,
+}
+
+impl<'a> Oriented<'a> {
     /// `None` for a triangle without area or culled.
-    pub(super) fn new(
-        vertices: &[ScreenVertex; 3],
-        cull: Cull,
-        inputs: Inputs,
-        perspective: bool,
-    ) -> Option<Self> {
-        let [mut a, mut b, mut c] = vertices.each_ref();
-        let edge_function = |a: &ScreenVertex, b: &ScreenVertex, p: &ScreenVertex| {
-            let ([ax, ay], [bx, by], [px, py]) = (position(a), position(b), position(p));
-            (bx - ax) * (py - ay) - (by - ay) * (px - ax)
-        };
-        let area = edge_function(a, b, c); // positive: clockwise on the screen
+    #[inline]
+    pub(super) fn new([a, b, c]: &'a [ScreenVertex; 3], cull: Cull) -> Option<Self> {
+        let ([ax, ay], [bx, by], [cx, cy]) = (position(a), position(b), position(c));
+        let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // positive: clockwise on the screen
         match cull {
             _ if area == 0 => return None,
             Cull::Back if area > 0 => return None,
             Cull::Front if area < 0 => return None,
             _ => {}
         }
-        if area < 0 {
-            (b, c) = (c, b);
-        }
-        if b.q > a.q && b.q >= c.q {
-            (a, b, c) = (b, c, a);
+        let [a, b, c] = if area < 0 { [a, c, b] } else { [a, b, c] };
+        let vertices = if b.q > a.q && b.q >= c.q {
+            [b, c, a]
         } else if c.q > a.q {
-            (a, b, c) = (c, a, b);
-        }
-        let corners = [position(a), position(b), position(c)];
-        let mut setup = Self {
-            corners,
-            area: Reciprocal::precise(area.unsigned_abs()),
+            [c, a, b]
+        } else {
+            [a, b, c]
+        };
+        Some(Self { vertices, area: area.unsigned_abs() })
+    }
+}
+
+impl TriangleSetup {
+    /// With its place and area; its planes are to be set. (In two steps, in place: a struct of this size that is
+    /// returned when all is done stands on the stack twice.)
+    #[inline]
+    pub(super) fn new(triangle: &Oriented<'_>) -> Self {
+        Self {
+            corners: triangle.vertices.map(position),
+            area: Reciprocal::precise(triangle.area),
             z: Plane::default(),
             q: Plane::default(),
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
-        };
+        }
+    }
 
-        let near_w = [a, b, c].map(|vertex| vertex.q.to_bits());
-        setup.z = setup.depth_plane(near_w);
+    #[inline(never)]
+    pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, inputs: Inputs, perspective: bool) {
+        let vertices = triangle.vertices;
+        let near_w = vertices.map(|vertex| vertex.q.to_bits());
+        self.z = self.depth_plane(near_w);
         let q = if perspective {
             // The nearest corner gets all 31 bits.
             let near_w = near_w.map(|q| q.clamp(1, i32::MAX as u32));
@@ -167,24 +193,23 @@ impl TriangleSetup {
         } else {
             [1 << 30; 3]
         };
-        setup.q = setup.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
-        setup.q_min = q[1].min(q[2]).min(q[0]);
+        let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
+        self.q = Plane { origin: q[0], rise, step: self.step(rise, true) };
+        self.q_min = q[1].min(q[2]).min(q[0]);
 
-        let mut count = 0;
-        let mut add = |at: [i32; 3]| {
-            setup.attributes[count] = setup.attribute(at, [q[1], q[2]]);
-            count += 1;
+        let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
+            self.attributes[0] = self.attribute(vertices.map(|vertex| vertex.u.to_bits()), &q);
+            self.attributes[1] = self.attribute(vertices.map(|vertex| vertex.v.to_bits()), &q);
+            2
+        } else {
+            0
         };
-        if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            add([a, b, c].map(|vertex| vertex.u.to_bits()));
-            add([a, b, c].map(|vertex| vertex.v.to_bits()));
-        }
         if matches!(inputs, Inputs::Color | Inputs::UvColor) {
             for channel in 0..3 {
-                add([a, b, c].map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8));
+                let at = vertices.map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8);
+                self.attributes[colors + channel] = self.attribute(at, &q);
             }
         }
-        Some(setup)
     }
 
     /// The weights at a pixel centre inside the triangle: exact edge functions times 1/area.
@@ -199,10 +224,6 @@ impl TriangleSetup {
         let b = weight((ax - cx) * py - (ay - cy) * px);
         let c = weight((bx - ax) * py - (by - ay) * px);
         Weights([b, c].map(|weight| weight.min(i64::from(i32::MAX)) as i32))
-    }
-
-    fn plane(&self, origin: u32, rise: [i32; 2]) -> Plane {
-        Plane { origin, rise, step: self.step(rise, true) }
     }
 
     /// Depth must not leave 0 … 2³¹ however far it is stepped: its step is rounded towards
@@ -228,10 +249,11 @@ impl TriangleSetup {
         if sum < 0 { -step } else { step }
     }
 
-    /// An attribute from its I16F16 values at the corners (within ±2²⁹) and q at corners 1 and 2.
-    fn attribute(&self, at: [i32; 3], q: [u32; 2]) -> Attribute {
+    /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there.
+    #[inline(never)]
+    fn attribute(&self, at: [i32; 3], q: &[u32; 3]) -> Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
-        let products = [wide(rise[0], q[0] as i32), wide(rise[1], q[1] as i32)];
+        let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger.
         let exponent = 34 - largest.leading_zeros() as i32;
@@ -239,7 +261,8 @@ impl TriangleSetup {
             (if exponent >= 0 { shift_round(product, exponent as u32) } else { product << -exponent }) as i32
         });
         Attribute {
-            plane: self.plane(0, scaled),
+            rise: scaled,
+            step: self.step(scaled, true),
             exponent,
             base: at[0],
             low: rise[0].min(rise[1]).min(0),

@@ -170,7 +170,7 @@ impl<const N: usize> Place<'_, N> {
     fn advance(&mut self, pixels: i32) {
         self.q = self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels));
         for (value, attribute) in self.values.iter_mut().zip(self.attributes) {
-            *value = value.wrapping_add(attribute.plane.step.wrapping_mul(pixels));
+            *value = value.wrapping_add(attribute.step.wrapping_mul(pixels));
         }
     }
 
@@ -214,6 +214,9 @@ enum SubSpans {
 impl Span<'_> {
     /// Fills pixels from this span's first one with `color` of the first `N` attributes, I16F16,
     /// which never leave the range of the triangle's corners.
+    ///
+    /// Not inlined: a shader that chooses between loops would need the stack of all of them.
+    #[inline(never)]
     pub(crate) fn shade<Q: Quality, W, const N: usize>(
         &self,
         pixels: &mut [W],
@@ -229,7 +232,7 @@ impl Span<'_> {
             q: setup.q.at(weights),
             q_step: setup.q.step,
             q_min: setup.q_min,
-            values: core::array::from_fn(|i| attributes[i].plane.at(weights) as i32),
+            values: core::array::from_fn(|i| attributes[i].at(weights)),
         };
         let sub_spans =
             if Q::EVERY_PIXEL { SubSpans::Log2(0) } else { place.sub_span_log2(pixels.len() as i32) };
@@ -267,6 +270,7 @@ impl Span<'_> {
 }
 
 /// The last sub-span: exact at its first and at its last pixel.
+#[inline(never)]
 fn tail<W, const N: usize>(
     pixels: &mut [W],
     at: [i32; N],

@@ -121,20 +121,19 @@ impl TriangleSetup {
         let long_is_left =
             (bottom[0] - top[0]) * (middle[1] - top[1]) - (bottom[1] - top[1]) * (middle[0] - top[0]) < 0;
         let mut long = Edge::new(top, bottom, start);
-        for (rows, from, to) in [(start..knee, top, middle), (knee..end, middle, bottom)] {
-            if rows.is_empty() {
-                continue;
+        let mut short =
+            if start < knee { Edge::new(top, middle, start) } else { Edge::new(middle, bottom, start) };
+        for y in start..end {
+            if y == knee && y > start {
+                short = Edge::new(middle, bottom, y);
             }
-            let mut short = Edge::new(from, to, rows.start);
-            for y in rows {
-                let (left, right) = if long_is_left { (long.x, short.x) } else { (short.x, long.x) };
-                let pixels = left.max(columns.start)..right.min(columns.end);
-                if pixels.start < pixels.end {
-                    emit(y, pixels);
-                }
-                long.next_row();
-                short.next_row();
+            let (left, right) = if long_is_left { (long.x, short.x) } else { (short.x, long.x) };
+            let pixels = left.max(columns.start)..right.min(columns.end);
+            if pixels.start < pixels.end {
+                emit(y, pixels);
             }
+            long.next_row();
+            short.next_row();
         }
     }
 }

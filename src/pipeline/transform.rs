@@ -45,6 +45,7 @@ pub(super) struct ToClip {
 const SIGNS: [i64; 3] = [1, -1, -1];
 
 impl ToClip {
+    #[inline(never)]
     pub(super) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
         // The camera's axes are the columns of its rotation; what it sees is turned by the rows.
         let axis = |row: usize| camera.rotation.map(|r| i64::from(r[row].to_bits()));

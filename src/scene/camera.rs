@@ -3,7 +3,7 @@
 use super::Mesh;
 use crate::math::{Pose, Turn, Vec3};
 use crate::num::{I2F14, I16F16, bits_from_f32};
-use crate::pipeline::{Pipeline, Shader};
+use crate::pipeline::{self, Shader};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use embedded_graphics::geometry::Size;
 
@@ -133,10 +133,7 @@ impl Camera {
         D: DepthFormat,
         S: Shader<F>,
     {
-        let pipeline = Pipeline::new(&self.projection, &self.pose, pose);
-        for corners in mesh.corners() {
-            pipeline.draw(corners, shader, band);
-        }
+        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band);
     }
 }
 

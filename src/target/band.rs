@@ -73,6 +73,12 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.top = row.min(MAX_SIDE) as u16;
     }
 
+    /// Width and height in pixels.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        Size::new(self.width as u32, self.height as u32)
+    }
+
     /// Forgets all depths, so that whatever is drawn next is seen.
     pub fn clear_depth(&mut self) {
         self.depth.fill(D::CLEAR);
@@ -168,7 +174,7 @@ impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
 
 impl<F: PixelFormat, D: DepthFormat> Dimensions for Band<'_, F, D> {
     fn bounding_box(&self) -> Rectangle {
-        Rectangle::new(Point::new(0, self.top.into()), Size::new(self.width.into(), self.height.into()))
+        Rectangle::new(Point::new(0, self.top.into()), self.size())
     }
 }
 
