@@ -1,6 +1,6 @@
 //! Meshes: vertices and triangles in flash.
 
-use crate::num::{I4F12, I12F4, bits16_from_f32};
+use crate::num::{I4F12, I12F4, bits_from_f32, bits16_from_f32};
 use core::fmt;
 
 /// A vertex of a mesh, 16 bytes.
@@ -12,7 +12,11 @@ pub struct Vertex {
     pub uv: [I12F4; 2],
     /// Red, green, blue, for [`Material::gouraud`](crate::Material::gouraud).
     pub color: [u8; 3],
+    /// The direction that lights see, of length 1.0 = 127 in mesh space.
+    pub normal: [i8; 3],
 }
+
+const _: () = assert!(size_of::<Vertex>() == 16);
 
 impl Vertex {
     /// A vertex at a position from literals, −8 … 7.9998: rounded to 1/4096, saturated, NaN is 0.
@@ -26,6 +30,7 @@ impl Vertex {
             ],
             uv: [I12F4::ZERO; 2],
             color: [255; 3],
+            normal: [0; 3],
         }
     }
 
@@ -43,11 +48,30 @@ impl Vertex {
         self
     }
 
+    /// The same with a normal from literals: a vector of length 1, rounded to 1/127 and saturated; NaN is 0.
+    #[must_use]
+    pub const fn normal(mut self, x: f32, y: f32, z: f32) -> Self {
+        self.normal = [unit127(x), unit127(y), unit127(z)];
+        self
+    }
+
     /// The same with a colour.
     #[must_use]
     pub const fn color(mut self, red: u8, green: u8, blue: u8) -> Self {
         self.color = [red, green, blue];
         self
+    }
+}
+
+#[expect(clippy::float_arithmetic, reason = "set-up convenience, folded in constants")]
+const fn unit127(component: f32) -> i8 {
+    let bits = bits_from_f32(component * 127.0, 0);
+    if bits > 127 {
+        127
+    } else if bits < -127 {
+        -127
+    } else {
+        bits as i8
     }
 }
 
