@@ -1,0 +1,23 @@
+//! Chooses the board by the target: its memory map, for the linker script of cortex-m-rt.
+
+use std::{env, fs, path::Path};
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    println!("cargo:rerun-if-changed=memory");
+    println!("cargo:rustc-check-cfg=cfg(board, values(\"lm3s6965evb\", \"microbit\"))");
+    let var = |name| env::var(name).expect("cargo sets it for build scripts");
+    let (board, memory) = match var("TARGET").as_str() {
+        "thumbv7m-none-eabi" => ("lm3s6965evb", "memory/lm3s6965.x"),
+        "thumbv6m-none-eabi" => ("microbit", "memory/nrf51822.x"),
+        // A desktop: the library, its tests and the programs' host halves need no linker script.
+        _ => return,
+    };
+    let out = var("OUT_DIR");
+    fs::copy(memory, Path::new(&out).join("memory.x")).expect("the memory map is in this package");
+    println!("cargo:rustc-cfg=board=\"{board}\"");
+    println!("cargo:rustc-link-search={out}");
+    // Sections need no alignment to a desktop's pages.
+    println!("cargo:rustc-link-arg-bins=--nmagic");
+    println!("cargo:rustc-link-arg-bins=-Tlink.x");
+}

@@ -1,0 +1,122 @@
+//! The scenes by which speed and size are judged: 160×120 RGB565, a focal length of 80 pixels, the
+//! camera at the origin looking along −z, near = 0.1, a 64×64 texture, backs culled.
+
+use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+use fixel::prelude::*;
+
+/// Width and height of every scene.
+pub const SIZE: Size = Size::new(160, 120);
+/// Pixels of a frame.
+pub const PIXELS: usize = 160 * 120;
+
+/// 64×64 texels of a brick wall with a border, so that a wrong repeat would show.
+static TEXELS: [u16; 4096] = wall();
+static WALL: Texture = Texture::new(&TEXELS, 6, 6);
+
+const fn wall() -> [u16; 4096] {
+    let mut texels = [0; 4096];
+    let mut i = 0;
+    while i < 4096 {
+        let (u, v) = (i % 64, i / 64);
+        let course = v / 8;
+        let joint = v % 8 == 0 || (u + course % 2 * 8) % 16 == 0;
+        let grain = ((u * 7 + v * 13) ^ (u * v)) % 8;
+        texels[i] = if joint {
+            0xbdd7
+        } else {
+            ((18 + grain % 4 + course % 3 * 2) << 11 | (16 + grain) << 5 | (6 + grain / 2)) as u16
+        };
+        i += 1;
+    }
+    texels
+}
+
+const QUAD: [[u16; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
+
+/// s1, in half units: mesh positions reach to ±8.
+const FLOOR: Mesh = Mesh::new(
+    &[
+        Vertex::new(-2.25, -0.725, -1.0).uv(0, 0),
+        Vertex::new(2.25, -0.725, -1.0).uv(64, 0),
+        Vertex::new(2.25, 3.2, -8.0).uv(64, 64),
+        Vertex::new(-2.25, 3.2, -8.0).uv(0, 64),
+    ],
+    &QUAD,
+);
+
+/// The ground, in eighths: x ±40, z +0.1 … −30, the texture 20 times across.
+const GROUND: Mesh = Mesh::new(
+    &[
+        Vertex::new(-5.0, -0.125, 0.0125).uv(-640, 0),
+        Vertex::new(5.0, -0.125, 0.0125).uv(640, 0),
+        Vertex::new(5.0, -0.125, -3.75).uv(640, 482),
+        Vertex::new(-5.0, -0.125, -3.75).uv(-640, 482),
+    ],
+    &QUAD,
+);
+
+const fn face(corners: [[f32; 3]; 4]) -> [Vertex; 4] {
+    let mut vertices = [Vertex::new(0.0, 0.0, 0.0); 4];
+    let mut i = 0;
+    while i < 4 {
+        let [x, y, z] = corners[i];
+        vertices[i] = Vertex::new(x, y, z).uv((i == 1 || i == 2) as i16 * 64, (i < 2) as i16 * 64);
+        i += 1;
+    }
+    vertices
+}
+
+const FACES: [[Vertex; 4]; 6] = [
+    face([[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]]),
+    face([[1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, -1.0]]),
+    face([[1.0, -1.0, 1.0], [1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0]]),
+    face([[-1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0]]),
+    face([[-1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]]),
+    face([[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0]]),
+];
+
+const fn cube_triangles() -> [[u16; 3]; 12] {
+    let mut triangles = [[0; 3]; 12];
+    let mut face = 0;
+    while face < 6 {
+        let first = face * 4;
+        triangles[face as usize * 2] = [first, first + 1, first + 2];
+        triangles[face as usize * 2 + 1] = [first, first + 2, first + 3];
+        face += 1;
+    }
+    triangles
+}
+
+const CUBE: Mesh = Mesh::new(FACES.as_flattened(), &cube_triangles());
+
+const CAMERA: Camera = Camera::focal(80.0, SIZE).near(0.1);
+const S2: Pose = Pose::IDENTITY
+    .rotated_x(Turn::from_degrees(-30))
+    .rotated_y(Turn::from_degrees(-40))
+    .at(Vec3::lit(0.0, 0.0, -2.62));
+
+/// A frame without depth.
+pub type Flat<'a> = Band<'a, Rgb565, NoDepth>;
+/// A frame with depth.
+pub type Deep<'a> = Band<'a, Rgb565, Depth16>;
+
+/// s1: the floor, turned about the view axis.
+#[inline(always)]
+pub fn s1(roll: Turn, frame: &mut Flat<'_>) {
+    let pose = Pose::IDENTITY.rotated_z(roll).scaled_lit(2.0);
+    CAMERA.draw(&FLOOR, &pose, &Material::textured(&WALL), frame);
+}
+
+/// s1_ground: the ground of a game, clipped by the near plane and beyond every edge of the screen.
+#[inline(always)]
+pub fn s1_ground(frame: &mut Flat<'_>) {
+    // 9.8°
+    let camera = CAMERA.pose(Pose::IDENTITY.rotated_x(-Turn::from_raw(1784)));
+    camera.draw(&GROUND, &Pose::IDENTITY.scaled_lit(8.0), &Material::textured(&WALL), frame);
+}
+
+/// s2: the cube.
+#[inline(always)]
+pub fn s2(frame: &mut Deep<'_>) {
+    CAMERA.draw(&CUBE, &S2, &Material::textured(&WALL), frame);
+}

@@ -1,0 +1,13 @@
+//! The part of the firmware that a board and a desktop share: the [`scene`], how its colours become
+//! grey levels ([`gray4`]), the [`checksum`]s by which two machines compare their pictures, and the
+//! driver of the OLED ([`ssd0323`]).
+//!
+//! The programs are `src/bin/oled` (LM3S6965EVB, Cortex-M3) and `src/bin/microbit` (Cortex-M0).
+
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+
+pub mod checksum;
+pub mod gray4;
+pub mod scene;
+pub mod ssd0323;
