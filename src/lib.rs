@@ -46,7 +46,7 @@
 //!
 //! let gold = MonoTextStyle::new(&FONT_10X20, Rgb565::CSS_GOLD);
 //! Text::new("hello", Point::new(8, 24), gold).draw(&mut band)?; // 2D on top just works
-//! # assert_eq!(band.depth().iter().filter(|&&depth| depth > 0).count(), 10_103);
+//! # assert_eq!(band.depth().iter().filter(|&&depth| depth > 0).count(), 9_811);
 //! # Ok(())
 //! # }
 //! ```
@@ -86,12 +86,15 @@ mod target;
 pub use embedded_graphics;
 pub use fixed;
 
-pub use math::{Pose, Turn, Vec3};
+pub use math::{Pose, Quaternion, Turn, Vec3};
 pub use pipeline::{
-    Affine, Cull, Exact, Inputs, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Span, Varying,
-    draw_triangle,
+    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Span,
+    Stats, Varying, draw_triangle,
 };
-pub use scene::{Camera, Material, Mesh, MeshError, Texture, TextureError, Vertex, Wrap, texels};
+pub use scene::{
+    Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,
+    TextureError, Vertex, Wrap, shapes, texels,
+};
 pub use target::{Band, BigEndian, Depth16, DepthFormat, NoDepth, PixelFormat, TargetError};
 
 /// What most programs use: `use fixel::prelude::*;`.

@@ -8,6 +8,7 @@
 //! | mesh position | [`I4F12`] | −8 … 7.9998 | 1/4096 |
 //! | mesh texture coordinate | [`I12F4`] | −2048 … 2047.9 texels | 1/16 texel |
 //! | rotation matrix, sine | [`I2F14`] | −2 … 1.9999 | 1/16384 |
+//! | quaternion | [`I2F30`] | −2 … 2 | 2⁻³⁰ |
 //! | scale of a pose | [`U10F22`] | 0 … 1023.9999998 | 2.4·10⁻⁷ |
 //! | world position | [`I16F16`] | −32768 … 32767.99998 | 1/65536 |
 //! | screen position | [`I12F4`] | guard band −1024 … 1023 px | 1/16 px |
@@ -15,7 +16,7 @@
 //! | texture coordinate on screen | [`I16F16`] | −8192 … 8192 texels | 2⁻¹⁶ texel |
 //! | colour channel on screen | [`U8F8`] | 0 … 255 is dark … full | 1/256 |
 
-pub use fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
+pub use fixed::types::{I2F14, I2F30, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 
 /// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
 ///

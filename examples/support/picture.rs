@@ -19,6 +19,7 @@ pub struct Picture {
 
 impl Picture {
     /// Decodes a PNG, each channel times `tint`.
+    #[expect(clippy::float_arithmetic, reason = "on a desktop")]
     pub fn open(path: &Path, tint: [f32; 3]) -> Result<Self, Box<dyn Error>> {
         let in_file = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let image = image::open(path).map_err(|error| in_file(&error))?.into_rgb8();

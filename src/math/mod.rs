@@ -1,10 +1,14 @@
-//! Angles, vectors, poses, and the reciprocal table.
+//! Angles, vectors, rotations, poses, and the reciprocal table.
 
 mod pose;
+mod quaternion;
 pub(crate) mod recip;
 mod turn;
+mod unit;
 mod vec;
 
 pub use pose::Pose;
+pub use quaternion::Quaternion;
 pub use turn::Turn;
+pub(crate) use unit::normalized;
 pub use vec::Vec3;

@@ -84,19 +84,18 @@ impl Reciprocal {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_arithmetic, reason = "the truth in f64")]
 mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::println;
 
-    #[expect(clippy::float_arithmetic, reason = "the f64 truth of a test")]
     fn relative_error(r: Reciprocal, divisor: u32) -> f64 {
         let exact = 2f64.powi(62 - r.zeros as i32) / f64::from(divisor);
         f64::from(r.mantissa) / exact - 1.0
     }
 
     #[test]
-    #[expect(clippy::float_arithmetic, reason = "bounds in f64")]
     fn coarse_is_within_2_pow_minus_20_for_every_input_of_its_table_stage() {
         // The table stage sees 24 bits behind normalisation: 2²³ … 2²⁴ − 1 are all its inputs.
         let (mut low, mut high) = (0f64, 0f64);
@@ -113,7 +112,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::float_arithmetic, reason = "bounds in f64")]
     fn both_hold_for_a_dense_sample_of_all_32_bit_inputs() {
         let (mut coarse, mut precise) = (0f64, 0f64);
         let mut count = 0;

@@ -137,12 +137,12 @@ impl Mul<i32> for Turn {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_arithmetic, reason = "the truth in f64")]
 mod tests {
     use super::*;
     use std::println;
 
     #[test]
-    #[expect(clippy::float_arithmetic, reason = "the f64 truth of a test")]
     fn sine_and_cosine_are_within_0_66_of_a_bit_for_all_65536_angles() {
         let mut worst = 0f64;
         for raw in 0..=u16::MAX {

@@ -12,10 +12,11 @@
 //!   └────────────────────────────────┘
 //! ```
 
-use super::transform::{ClipVertex, focal_log2};
+use super::color::Coloring;
+use super::transform::{ClipVertex, ToClip, focal_log2};
 use crate::math::recip::Reciprocal;
 use crate::num::{I12F4, I16F16, U1F31, U8F8, shift_round, wide};
-use crate::scene::Projection;
+use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 use heapless::Vec;
 
@@ -54,109 +55,184 @@ impl ScreenVertex {
     }
 }
 
-/// One vertex more for each of the five planes.
-pub(super) type Polygon = Vec<ClipVertex, 8>;
+/// One vertex more for each of the six planes, and one to spare.
+type Polygon = Vec<ClipVertex, MOST_CORNERS>;
+
+/// The most corners that a clipped triangle has: three, and one more for each plane.
+pub(super) const MOST_CORNERS: usize = 9;
 
 /// Clips and projects.
 pub(super) struct Clip {
     /// The near plane in clip units, rounded up; at least 1.
     near: i32,
-    /// near as a mantissa of 31 bits …
-    near_mantissa: i32,
-    /// … and the shift that makes near/w of it: q = `near_mantissa` / w · 2^−(`near_shift` − 62).
-    near_shift: i32,
+    /// The far plane in clip units, rounded down.
+    far: i32,
+    /// Perspective: near as a mantissa of 31 bits; orthographic: 1/(far − near) as such.
+    depth_mantissa: i32,
+    /// Perspective: q = mantissa/w · 2^(62 − shift); orthographic: q = (far − w) · mantissa · 2^−shift.
+    depth_shift: i32,
     /// Screen = centre + x/w · 2^`scale` in 1/16 px.
     scale: i32,
     /// The vanishing point, in 1/16 px.
     center: [i32; 2],
+    /// 1.0 in clip units if w does not divide, else 0.
+    orthographic: i32,
 }
 
-/// The two ends of the screen, across and down.
+/// The planes of the guard band, across and down.
 const SIDES: [(usize, i64); 4] = [(0, *CUT.start()), (0, *CUT.end()), (1, *CUT.start()), (1, *CUT.end())];
 
 impl Clip {
     pub(super) fn new(projection: &Projection, unit_bits: i32) -> Self {
-        let near = i64::from(projection.near.to_bits());
-        let near_units = if unit_bits >= 16 {
-            near << (unit_bits - 16)
-        } else {
-            // Up: nothing that is drawn has a q above 1.
-            (near + (1 << (16 - unit_bits)) - 1) >> (16 - unit_bits)
+        // To clip units: up for the near plane, so that nothing that is drawn has a q above 1.
+        let in_units = |distance: I16F16, round_up: bool| {
+            let distance = i64::from(distance.to_bits());
+            let units = if unit_bits >= 16 {
+                distance << (unit_bits - 16)
+            } else {
+                (distance + if round_up { (1 << (16 - unit_bits)) - 1 } else { 0 }) >> (16 - unit_bits)
+            };
+            // A plane beyond all clip coordinates.
+            units.min(i64::from(i32::MAX)) as i32
         };
-        let zeros = projection.near.to_bits().leading_zeros() as i32 - 1;
+        let near = in_units(projection.near, true);
+        let far = if projection.far == I16F16::MAX { i32::MAX } else { in_units(projection.far, false) };
+        let (depth_mantissa, depth_shift) = if projection.orthographic {
+            let range = Reciprocal::precise(far.saturating_sub(near).max(1) as u32);
+            (range.mantissa, 31 - range.zeros as i32)
+        } else {
+            let zeros = projection.near.to_bits().leading_zeros() as i32 - 1;
+            (projection.near.to_bits() << zeros, 47 + zeros - unit_bits)
+        };
         Self {
-            // A near plane beyond all clip coordinates clips everything.
-            near: near_units.min(i64::from(i32::MAX)) as i32,
-            near_mantissa: projection.near.to_bits() << zeros,
-            near_shift: 47 + zeros - unit_bits,
+            near,
+            far,
+            depth_mantissa,
+            depth_shift,
             scale: focal_log2(projection.focal) + 4,
-            center: [i32::from(projection.width) * 8, i32::from(projection.height) * 8],
+            center: projection.center,
+            orthographic: if projection.orthographic { 1 << unit_bits } else { 0 },
         }
     }
 
-    /// Hands on what is left of a triangle: nothing, itself, or up to six pieces.
+    /// What x and y are divided by, in clip units.
     #[inline]
-    pub(super) fn clip(&self, polygon: &mut Polygon, mut draw: impl FnMut(&[ScreenVertex; 3])) {
-        let mut triangle = [ScreenVertex::default(); 3];
-        let inside =
-            triangle.iter_mut().zip(&*polygon).all(|(vertex, corner)| self.project(corner, &CUT, vertex));
-        if !inside {
-            self.cut(polygon);
-        }
-        // A triangle, or a fan around the first vertex.
-        let mut count = 0;
-        for corner in &*polygon {
-            if (inside && count < 3) || self.project(corner, &GUARD_BAND, &mut triangle[count.min(2)]) {
-                count += 1;
-                if count >= 3 {
-                    draw(&triangle);
-                    triangle[1] = triangle[2];
-                }
-            }
-        }
+    fn divisor(&self, vertex: &ClipVertex) -> i32 {
+        if self.orthographic != 0 { self.orthographic } else { vertex.w }
     }
 
+    /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
+    #[inline(never)]
+    pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
+        let (center, radius) = &to_clip.bounds(bounds);
+        let (w, viewport) = (i64::from(center.w), &projection.viewport);
+        if w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
+            return false;
+        }
+        // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
+        // side : focal length; all in 1/16 px.
+        let focal = i64::from(projection.focal.to_bits()) >> 12;
+        let sides = [
+            (0, -1, i32::from(viewport.left)),
+            (0, 1, i32::from(viewport.left) + i32::from(viewport.width)),
+            (1, -1, i32::from(viewport.top)),
+            (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
+        ];
+        sides.iter().all(|&(axis, sign, side)| {
+            let slope = i64::from(side) * 16 - i64::from(self.center[axis]);
+            let across = i64::from(if axis == 0 { center.x } else { center.y }) << self.scale;
+            let outside = (across - slope * i64::from(self.divisor(center))) * sign;
+            let length = if self.orthographic != 0 {
+                focal
+            } else {
+                ((focal * focal + slope * slope) as u64).isqrt() as i64
+            };
+            outside <= (radius + 1) * (length + 1)
+        })
+    }
+
+    /// Cuts a triangle that is not inside all planes and puts what is left of it on the screen, as a fan
+    /// around its first vertex; `None` if that does not fit the guard band (which only the coarsest of numbers do not).
     #[cold]
     #[inline(never)]
-    fn cut(&self, polygon: &mut Polygon) {
-        cut_by(polygon, |vertex| vertex.w >= self.near, |vertex| i64::from(vertex.w) - i64::from(self.near));
+    pub(super) fn cut(
+        &self,
+        to_clip: &ToClip,
+        coloring: &Coloring,
+        corners: [&Vertex; 3],
+        to: &mut [ScreenVertex; MOST_CORNERS],
+    ) -> Option<usize> {
+        let mut polygon = Polygon::new();
+        for corner in corners {
+            // There is room.
+            let _ = polygon.push(to_clip.transform(corner, coloring.of_vertex(corner)));
+        }
+        cut_by(
+            &mut polygon,
+            |vertex| vertex.w >= self.near,
+            |vertex| i64::from(vertex.w) - i64::from(self.near),
+        );
+        cut_by(
+            &mut polygon,
+            |vertex| vertex.w <= self.far,
+            |vertex| i64::from(self.far) - i64::from(vertex.w),
+        );
         for (axis, side) in SIDES {
             cut_by(
-                polygon,
+                &mut polygon,
                 |vertex| {
-                    let at = self.screen(vertex, axis, Reciprocal::precise(vertex.w as u32));
+                    let at = self.screen(vertex, axis, Reciprocal::precise(self.divisor(vertex) as u32));
                     if side < 0 { at >= side } else { at <= side }
                 },
                 |vertex| {
-                    let offset = wide(vertex.w, side as i32 - self.center[axis]);
+                    let offset = wide(self.divisor(vertex), side as i32 - self.center[axis]);
                     let x = i64::from(if axis == 0 { vertex.x } else { vertex.y }) << self.scale;
                     if side < 0 { x - offset } else { offset - x }
                 },
             );
         }
+        let fits = polygon.iter().zip(&mut *to).all(|(vertex, to)| self.project(vertex, &GUARD_BAND, to));
+        fits.then_some(polygon.len())
+    }
+
+    /// Puts a vertex that clipping has nothing to do with on the screen; false, and nothing done, for another.
+    #[inline(never)]
+    pub(super) fn place(
+        &self,
+        to_clip: &ToClip,
+        coloring: &Coloring,
+        vertex: &Vertex,
+        to: &mut ScreenVertex,
+    ) -> bool {
+        self.project(&to_clip.transform(vertex, coloring.of_vertex(vertex)), &CUT, to)
     }
 
     /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest.
+    #[inline]
     fn screen(&self, vertex: &ClipVertex, axis: usize, w: Reciprocal) -> i64 {
         let x = if axis == 0 { vertex.x } else { vertex.y };
         let shift = 62 - w.zeros as i32 - self.scale;
         shift_round(wide(x, w.mantissa), shift as u32) + i64::from(self.center[axis])
     }
 
-    /// Puts the vertex on the screen; false, and nothing done, if it lies before the near plane or its
-    /// position (1/16 px) outside `range`.
+    /// Puts the vertex on the screen; false, and nothing done, if it is not between the planes or its
+    /// position (1/16 px) not in `range`.
     #[inline(never)]
     fn project(&self, vertex: &ClipVertex, range: &RangeInclusive<i64>, to: &mut ScreenVertex) -> bool {
-        if vertex.w < self.near {
+        if vertex.w < self.near || vertex.w > self.far {
             return false;
         }
-        let w = Reciprocal::precise(vertex.w as u32);
+        let w = Reciprocal::precise(self.divisor(vertex) as u32);
         let (x, y) = (self.screen(vertex, 0, w), self.screen(vertex, 1, w));
         if !range.contains(&x) || !range.contains(&y) {
             return false;
         }
-        let shift = (self.near_shift - w.zeros as i32).clamp(0, 63);
-        let q = shift_round(wide(self.near_mantissa, w.mantissa), shift as u32);
+        let q = if self.orthographic != 0 {
+            shift_round(wide(self.far - vertex.w, self.depth_mantissa), self.depth_shift as u32)
+        } else {
+            let shift = (self.depth_shift - w.zeros as i32).clamp(0, 63);
+            shift_round(wide(self.depth_mantissa, w.mantissa), shift as u32)
+        };
         *to = ScreenVertex {
             x: I12F4::from_bits(x as i16),
             y: I12F4::from_bits(y as i16),

@@ -90,6 +90,8 @@ pub(super) struct Attribute {
     /// The range of u − u₀ at the corners, I16F16.
     low: i32,
     high: i32,
+    /// What comes out is times 2^this, modulo 2³².
+    scale_log2: u32,
 }
 
 impl Attribute {
@@ -111,7 +113,7 @@ impl Attribute {
             let exponent = exponent.min(31);
             product.clamp(self.low >> exponent, self.high >> exponent) << exponent
         };
-        self.base + offset.clamp(self.low, self.high)
+        (self.base + offset.clamp(self.low, self.high)) << self.scale_log2
     }
 }
 
@@ -119,7 +121,7 @@ impl Attribute {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights([i32; 2]);
 
-const _: () = assert!(size_of::<TriangleSetup>() == 208);
+const _: () = assert!(size_of::<TriangleSetup>() == 228);
 
 impl Plane {
     /// The value where the weights are taken.
@@ -136,9 +138,17 @@ impl Weights {
     }
 }
 
+/// What a shader wants of a triangle.
+pub(super) struct Needs {
+    pub(super) inputs: Inputs,
+    pub(super) perspective: bool,
+    /// u and v are multiplied by 2^this, 0 … 8.
+    pub(super) texture_scale: u32,
+}
+
 /// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
 pub(super) struct Oriented<'a> {
-    vertices: [&'a ScreenVertex; 3],
+    pub(super) vertices: [&'a ScreenVertex; 3],
     area: u32,
 }
 
@@ -182,7 +192,8 @@ impl TriangleSetup {
     }
 
     #[inline(never)]
-    pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, inputs: Inputs, perspective: bool) {
+    pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+        let Needs { inputs, perspective, texture_scale } = *needs;
         let vertices = triangle.vertices;
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         self.z = self.depth_plane(near_w);
@@ -198,8 +209,8 @@ impl TriangleSetup {
         self.q_min = q[1].min(q[2]).min(q[0]);
 
         let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            self.attributes[0] = self.attribute(vertices.map(|vertex| vertex.u.to_bits()), &q);
-            self.attributes[1] = self.attribute(vertices.map(|vertex| vertex.v.to_bits()), &q);
+            self.attributes[0] = self.attribute(vertices.map(|vertex| vertex.u.to_bits()), &q, texture_scale);
+            self.attributes[1] = self.attribute(vertices.map(|vertex| vertex.v.to_bits()), &q, texture_scale);
             2
         } else {
             0
@@ -207,7 +218,7 @@ impl TriangleSetup {
         if matches!(inputs, Inputs::Color | Inputs::UvColor) {
             for channel in 0..3 {
                 let at = vertices.map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8);
-                self.attributes[colors + channel] = self.attribute(at, &q);
+                self.attributes[colors + channel] = self.attribute(at, &q, 0);
             }
         }
     }
@@ -251,7 +262,7 @@ impl TriangleSetup {
 
     /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there.
     #[inline(never)]
-    fn attribute(&self, at: [i32; 3], q: &[u32; 3]) -> Attribute {
+    fn attribute(&self, at: [i32; 3], q: &[u32; 3], scale_log2: u32) -> Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
@@ -267,6 +278,7 @@ impl TriangleSetup {
             base: at[0],
             low: rise[0].min(rise[1]).min(0),
             high: rise[0].max(rise[1]).max(0),
+            scale_log2,
         }
     }
 }

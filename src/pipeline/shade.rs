@@ -13,8 +13,10 @@
 //! 3/16 of a pixel and leaves 1/16 to rounding: **L² ≤ ¾·q/|q′|**. So floors seen level and walls seen
 //! straight (q′ ≈ 0) are one affine run, and a strongly foreshortened wall divides every few pixels.
 
+use super::color::Coloring;
 use super::setup::{Attribute, Cull};
 use super::span::Span;
+use crate::math::Pose;
 use crate::math::recip::Reciprocal;
 use crate::num::{I16F16, wide};
 use crate::target::PixelFormat;
@@ -132,6 +134,19 @@ pub trait Shader<F: PixelFormat> {
     /// Which side of a triangle [`Camera::draw`](crate::Camera::draw) leaves out.
     fn cull(&self) -> Cull {
         Cull::Back
+    }
+
+    /// What colour the vertices of a mesh in this pose have, for shaders that read it: their own, unless lit.
+    fn coloring(&self, pose: &Pose) -> Coloring {
+        let _ = pose;
+        Coloring::default()
+    }
+
+    /// By how much texture coordinates are multiplied, as a power of two: 2⁰ … 2⁸, so that a plane can repeat its
+    /// texture hundreds of times. What goes beyond ±32768 texels starts again at the other end, which no repeated
+    /// texture shows.
+    fn texture_scale(&self) -> u32 {
+        0
     }
 
     /// Draws the visible pixels of a span. The default calls [`Shader::color`] for each.
@@ -253,7 +268,7 @@ impl Span<'_> {
                     let next = place.resolve();
                     // Towards zero, so that no pixel lies beyond `next`.
                     let step = core::array::from_fn(|i| {
-                        let rise = next[i] - at[i];
+                        let rise = next[i].wrapping_sub(at[i]);
                         (rise + ((rise >> 31) & ((1 << log2) - 1))) >> log2
                     });
                     run(block, at, step, &color);
@@ -286,7 +301,7 @@ fn tail<W, const N: usize>(
         let reciprocal = Reciprocal::precise(steps as u32);
         let inverse = (reciprocal.mantissa - 4) >> (31 - reciprocal.zeros);
         step = core::array::from_fn(|i| {
-            let rise = last[i] - at[i];
+            let rise = last[i].wrapping_sub(at[i]);
             let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
             if rise < 0 { -size } else { size }
         });

@@ -17,8 +17,10 @@
 //! The number is ceil(−E/16dy) for the edge function E at the row's first centre. From row to row it changes
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
-use super::setup::TriangleSetup;
+use super::setup::{Oriented, TriangleSetup};
 use crate::math::recip::Reciprocal;
+use crate::num::I12F4;
+use crate::scene::Viewport;
 use core::ops::Range;
 
 /// Pixels of one row of a triangle, side by side and all visible; handed to a
@@ -99,9 +101,44 @@ const fn first_row(y: i32) -> i32 {
     (y + 7) >> 4
 }
 
+/// The part of the screen that is drawn to.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    pub(crate) columns: Range<i32>,
+    pub(crate) rows: Range<i32>,
+}
+
+impl Window {
+    pub(crate) fn within(self, viewport: &Viewport) -> Self {
+        let (left, top) = (i32::from(viewport.left), i32::from(viewport.top));
+        let within = |range: Range<i32>, start: i32, length: i16| {
+            range.start.max(start)..range.end.min(start + i32::from(length))
+        };
+        Self {
+            columns: within(self.columns, left, viewport.width),
+            rows: within(self.rows, top, viewport.height),
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+
+    /// Whether a triangle's bounding box has a pixel centre in it.
+    #[inline]
+    pub(super) fn touches(&self, triangle: &Oriented<'_>) -> bool {
+        let overlaps = |a: I12F4, b: I12F4, c: I12F4, range: &Range<i32>| {
+            let (low, high) = (a.min(b).min(c).to_bits(), a.max(b).max(c).to_bits());
+            first_row(low.into()) < range.end && first_row(high.into()) >= range.start
+        };
+        let [a, b, c] = triangle.vertices;
+        overlaps(a.y, b.y, c.y, &self.rows) && overlaps(a.x, b.x, c.x, &self.columns)
+    }
+}
+
 impl TriangleSetup {
-    /// Hands on every row of the triangle within `rows`, as its row and its pixels within `columns`.
-    pub(crate) fn rows(&self, rows: Range<i32>, columns: Range<i32>, mut emit: impl FnMut(i32, Range<i32>)) {
+    /// Hands on every row of the triangle within a window, as its row and its pixels.
+    pub(crate) fn rows(&self, window: &Window, mut emit: impl FnMut(i32, Range<i32>)) {
         let [mut top, mut middle, mut bottom] = self.corners;
         if middle[1] < top[1] {
             (top, middle) = (middle, top);
@@ -112,8 +149,8 @@ impl TriangleSetup {
                 (top, middle) = (middle, top);
             }
         }
-        let start = first_row(top[1]).max(rows.start);
-        let end = first_row(bottom[1]).min(rows.end);
+        let start = first_row(top[1]).max(window.rows.start);
+        let end = first_row(bottom[1]).min(window.rows.end);
         if start >= end {
             return;
         }
@@ -128,7 +165,7 @@ impl TriangleSetup {
                 short = Edge::new(middle, bottom, y);
             }
             let (left, right) = if long_is_left { (long.x, short.x) } else { (short.x, long.x) };
-            let pixels = left.max(columns.start)..right.min(columns.end);
+            let pixels = left.max(window.columns.start)..right.min(window.columns.end);
             if pixels.start < pixels.end {
                 emit(y, pixels);
             }

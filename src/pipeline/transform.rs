@@ -7,7 +7,7 @@
 
 use crate::math::Pose;
 use crate::num::{I16F16, U8F8, mul_round, shift_round};
-use crate::scene::{Projection, Vertex};
+use crate::scene::{Bounds, Projection, Vertex};
 
 /// A vertex in clip space: what stands before the division by w.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,8 @@ pub(super) struct ToClip {
     /// In clip units, within ±2²⁹.
     translation: [i32; 3],
     unit_bits: i32,
+    /// The pose's, U10F22.
+    scale: u32,
 }
 
 /// Rows of eye space turned into rows of clip space: y down, w along −z.
@@ -78,6 +80,7 @@ impl ToClip {
             shift: (fraction_bits - 4 - unit_bits).min(31) as u32,
             translation: translation.map(|element| to_i32(element, 30 - unit_bits)),
             unit_bits,
+            scale: pose.scale.to_bits(),
         };
         let focal = projection.focal.to_bits();
         let focal = focal << (focal.leading_zeros() - 1); // 2³⁰ … 2³¹ − 1
@@ -93,8 +96,16 @@ impl ToClip {
         self.unit_bits
     }
 
+    /// The bounds' centre, and the radius in clip units, rounded up by more than a rotation's elements are rounded.
+    pub(super) fn bounds(&self, bounds: &Bounds) -> (ClipVertex, i64) {
+        let radius = (i64::from(bounds.radius) * i64::from(self.scale)) >> (34 - self.unit_bits);
+        let center = Vertex { position: bounds.center, ..Vertex::default() };
+        (self.transform(&center, [U8F8::ZERO; 3]), radius + (radius >> 10) + 4)
+    }
+
     /// Places one vertex: 18 short multiplications.
-    pub(super) fn transform(&self, vertex: &Vertex) -> ClipVertex {
+    #[inline(never)]
+    pub(super) fn transform(&self, vertex: &Vertex, color: [U8F8; 3]) -> ClipVertex {
         let position = vertex.position.map(|p| i32::from(p.to_bits()));
         let place = |row: usize| {
             let [a, b, c] = self.matrix[row];
@@ -107,7 +118,7 @@ impl ToClip {
             w: place(2),
             u: vertex.uv[0].into(),
             v: vertex.uv[1].into(),
-            color: vertex.color.map(U8F8::from_num),
+            color,
         }
     }
 }

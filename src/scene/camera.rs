@@ -1,15 +1,28 @@
 //! The camera: where from and how wide a scene is seen.
 
 use super::Mesh;
-use crate::math::{Pose, Turn, Vec3};
-use crate::num::{I2F14, I16F16, bits_from_f32};
-use crate::pipeline::{self, Shader};
+use super::projection::{Projection, clamped, limited};
+use crate::math::{Pose, Turn, Vec3, normalized};
+use crate::num::{I2F14, I12F4, I16F16, U1F31, bits_from_f32};
+use crate::pipeline::{self, Shader, Stats};
 use crate::target::{Band, DepthFormat, PixelFormat};
-use embedded_graphics::geometry::Size;
+use embedded_graphics::geometry::{Point, Size};
 
-/// A perspective camera and its place in the world.
+/// A camera and its place in the world.
 ///
 /// Unless placed otherwise it stands at the origin and looks along −z, with +x right and +y up.
+///
+/// ```
+/// use fixel::prelude::*;
+/// use fixel::embedded_graphics::geometry::Size;
+/// const CAMERA: Camera = Camera::perspective(Turn::from_degrees(60), Size::new(240, 240))
+///     .near(0.25)
+///     .at(Vec3::lit(0.0, 1.0, 5.0))
+///     .look_at(Vec3::ZERO, Vec3::lit(0.0, 1.0, 0.0));
+/// // The origin is in the middle of the screen.
+/// let middle = CAMERA.project(Vec3::ZERO).unwrap();
+/// assert_eq!([middle.x, middle.y], [120, 120]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Camera {
     projection: Projection,
@@ -17,20 +30,16 @@ pub struct Camera {
     pose: Pose,
 }
 
-/// How eye space is put on the screen.
+/// A point of the world on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Projection {
-    /// Focal length in pixels, 1/16 … 8191.
-    pub(crate) focal: I16F16,
-    /// Screen size in pixels, at most 1023 × 1023; the centre is the vanishing point of −z.
-    pub(crate) width: u16,
-    pub(crate) height: u16,
-    /// Distance of the near plane, above 0.
-    pub(crate) near: I16F16,
+pub struct Projected {
+    /// Pixels from the left edge; pixel centres are at +½.
+    pub x: I12F4,
+    /// Pixels from the top edge, down.
+    pub y: I12F4,
+    /// near/w (perspective) or 1 at the near and 0 at the far plane (orthographic), to compare with depth.
+    pub q: U1F31,
 }
-
-const MIN_FOCAL: i32 = 1 << 12;
-const MAX_FOCAL: i32 = 8191 << 16;
 
 impl Camera {
     /// A camera whose picture is `vertical` high, as an angle, on a screen of `size` pixels.
@@ -43,8 +52,8 @@ impl Camera {
         let half = Turn::from_raw(vertical.raw() / 2);
         let (sin, cos) = (half.sin().to_bits() as i64, half.cos().to_bits() as i64);
         let height = limited(size.height) as i64;
-        let focal = if sin > 0 { (height << 15) * cos / sin } else { MAX_FOCAL as i64 };
-        Self::with_focal(if focal > MAX_FOCAL as i64 { MAX_FOCAL } else { focal as i32 }, size)
+        let focal = if sin > 0 { (height << 15) * cos / sin } else { i64::MAX };
+        Self::new(focal, false, size)
     }
 
     /// A camera whose screen is `pixels` pixels away from the eye: an object as far away as it
@@ -53,26 +62,19 @@ impl Camera {
     /// Limited to 1/16 … 8191, the size to 1023 × 1023; NaN is 1/16.
     #[must_use]
     pub const fn focal(pixels: f32, size: Size) -> Self {
-        Self::with_focal(bits_from_f32(pixels, 16), size)
+        Self::new(bits_from_f32(pixels, 16) as i64, false, size)
     }
 
-    const fn with_focal(focal: i32, size: Size) -> Self {
-        let focal = if focal < MIN_FOCAL {
-            MIN_FOCAL
-        } else if focal > MAX_FOCAL {
-            MAX_FOCAL
-        } else {
-            focal
-        };
-        Self {
-            projection: Projection {
-                focal: I16F16::from_bits(focal),
-                width: limited(size.width),
-                height: limited(size.height),
-                near: I16F16::from_bits(1 << 12),
-            },
-            pose: Pose::IDENTITY,
-        }
+    /// A camera without perspective: everything is `pixels_per_unit` pixels a world unit, near or far.
+    ///
+    /// It sees from 1/16 to 256 in front of it; depth is linear between. Limited as [`Camera::focal`].
+    #[must_use]
+    pub const fn orthographic(pixels_per_unit: f32, size: Size) -> Self {
+        Self::new(bits_from_f32(pixels_per_unit, 16) as i64, true, size)
+    }
+
+    const fn new(focal: i64, orthographic: bool, size: Size) -> Self {
+        Self { projection: Projection::new(focal, orthographic, size), pose: Pose::IDENTITY }
     }
 
     /// The same with the near plane at this distance, 1/16 before; at least 2⁻¹⁶, also for NaN.
@@ -82,6 +84,35 @@ impl Camera {
     pub const fn near(mut self, distance: f32) -> Self {
         let bits = bits_from_f32(distance, 16);
         self.projection.near = I16F16::from_bits(if bits < 1 { 1 } else { bits });
+        self
+    }
+
+    /// The same with a far plane at this distance, beyond which nothing is drawn.
+    #[must_use]
+    pub const fn far(mut self, distance: f32) -> Self {
+        let bits = bits_from_f32(distance, 16);
+        self.projection.far = I16F16::from_bits(if bits < 1 { 1 } else { bits });
+        self
+    }
+
+    /// The same picture with its top left corner elsewhere on the screen (at most ±1023): `size` is then that of a part
+    /// of the screen. Outside it nothing is drawn.
+    #[must_use]
+    pub const fn viewport(mut self, top_left: Point) -> Self {
+        self.projection = self.projection.moved_to(top_left.x, top_left.y);
+        self
+    }
+
+    /// The same with the line of sight meeting the screen off its middle, by so many pixels (at most ±511): an off-axis
+    /// projection, for stereo pairs and for mirrors.
+    #[must_use]
+    pub const fn off_axis(mut self, right: I12F4, down: I12F4) -> Self {
+        let projection = &mut self.projection;
+        let viewport = projection.viewport;
+        projection.center = [
+            viewport.left as i32 * 16 + viewport.width as i32 * 8 + clamped(right.to_bits() as i32, 511 * 16),
+            viewport.top as i32 * 16 + viewport.height as i32 * 8 + clamped(down.to_bits() as i32, 511 * 16),
+        ];
         self
     }
 
@@ -122,6 +153,82 @@ impl Camera {
         self
     }
 
+    /// The same on a sphere around `target`, looking at it: at `yaw` 0 and `pitch` 0 from +z, with yaw
+    /// to the right and with pitch upwards.
+    #[must_use]
+    pub fn orbit(mut self, target: Vec3, distance: I16F16, yaw: Turn, pitch: Turn) -> Self {
+        let rotation = Pose::IDENTITY.rotated_x(-pitch).rotated_y(yaw).rotation;
+        self.pose.rotation = rotation;
+        self.pose.translation = target + along(&rotation, [0, 0, distance.to_bits()]);
+        self
+    }
+
+    /// The same, flown by so much to the right, upwards and forwards as it is turned now.
+    #[must_use]
+    pub fn flown(mut self, right: I16F16, up: I16F16, forward: I16F16) -> Self {
+        let back = forward.to_bits().saturating_neg();
+        let step = along(&self.pose.rotation, [right.to_bits(), up.to_bits(), back]);
+        self.pose.translation = self.pose.translation + step;
+        self
+    }
+
+    /// The same in a level flight's attitude: turned left by `yaw` from −z, then nose up by `pitch`, then its right wing up
+    /// by `roll`.
+    #[must_use]
+    pub const fn heading(mut self, yaw: Turn, pitch: Turn, roll: Turn) -> Self {
+        self.pose.rotation = Pose::IDENTITY.rotated_z(roll).rotated_x(pitch).rotated_y(yaw).rotation;
+        self
+    }
+
+    /// Where the camera stands and how it is turned.
+    #[must_use]
+    pub const fn placement(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// The focal length in pixels, or the pixels of a world unit of an orthographic camera, as it is used.
+    #[must_use]
+    pub const fn focal_length(&self) -> I16F16 {
+        self.projection.focal
+    }
+
+    /// The distances of the near and the far plane; a perspective camera without a far plane has `I16F16::MAX`.
+    #[must_use]
+    pub const fn planes(&self) -> (I16F16, I16F16) {
+        (self.projection.near, self.projection.far)
+    }
+
+    /// Where on the screen the line of sight meets it, in pixels.
+    #[must_use]
+    pub const fn center(&self) -> (I12F4, I12F4) {
+        let [x, y] = self.projection.center;
+        (I12F4::from_bits(x as i16), I12F4::from_bits(y as i16))
+    }
+
+    /// Where a point of the world is on the screen; `None` if it is not between the planes or not
+    /// in the guard band of −1023 … 1022 px.
+    #[must_use]
+    pub fn project(&self, point: Vec3) -> Option<Projected> {
+        let at = pipeline::project(&self.projection, &self.pose, point)?;
+        Some(Projected { x: at.x, y: at.y, q: at.q })
+    }
+
+    /// The point of the world that is seen at a place of the screen, at a distance along the line of sight (its w);
+    /// saturated at the world's ends. Where on the ground a pixel lies, say, follows from two of them.
+    #[must_use]
+    pub fn unproject(&self, x: I12F4, y: I12F4, distance: I16F16) -> Vec3 {
+        let projection = &self.projection;
+        let focal = i64::from(projection.focal.to_bits());
+        let offset = |at: I12F4, axis: usize| {
+            let pixels = i64::from(at.to_bits()) - i64::from(projection.center[axis]); // 1/16 px
+            let depth = if projection.orthographic { 1 << 16 } else { i64::from(distance.to_bits()) };
+            let eye = ((pixels * depth) << 12) / focal;
+            eye.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+        };
+        let eye = [offset(x, 0), offset(y, 1).saturating_neg(), distance.to_bits().saturating_neg()];
+        self.pose.translation + along(&self.pose.rotation, eye)
+    }
+
     /// Draws a mesh, standing as `pose` says, into a band.
     ///
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
@@ -133,12 +240,33 @@ impl Camera {
         D: DepthFormat,
         S: Shader<F>,
     {
-        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band);
+        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band, &mut ());
+    }
+
+    /// As [`Camera::draw`], and counts what became of the mesh.
+    pub fn draw_counted<F, D, S>(
+        &self,
+        mesh: &Mesh<'_>,
+        pose: &Pose,
+        shader: &S,
+        band: &mut Band<'_, F, D>,
+        stats: &mut Stats,
+    ) where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band, stats);
     }
 }
 
-const fn limited(side: u32) -> u16 {
-    if side > 1023 { 1023 } else { side as u16 }
+/// Eye space to a direction in the world, saturated.
+fn along(rotation: &[[I2F14; 3]; 3], eye: [i32; 3]) -> Vec3 {
+    let [x, y, z] = rotation.map(|row| {
+        let sum: i64 = row.iter().zip(eye).map(|(r, e)| i64::from(r.to_bits()) * i64::from(e)).sum();
+        I16F16::from_bits(((sum + (1 << 13)) >> 14).clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    });
+    Vec3::new(x, y, z)
 }
 
 const fn difference(a: [i32; 3], b: [i32; 3]) -> [i64; 3] {
@@ -151,26 +279,6 @@ const fn cross(a: [i32; 3], b: [i32; 3]) -> [i64; 3] {
         a[2] as i64 * b[0] as i64 - a[0] as i64 * b[2] as i64,
         a[0] as i64 * b[1] as i64 - a[1] as i64 * b[0] as i64,
     ]
-}
-
-/// The direction of a vector as a unit vector of 30 fraction bits; `None` for one without.
-const fn normalized(v: [i64; 3]) -> Option<[i32; 3]> {
-    let largest = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();
-    if largest == 0 {
-        return None;
-    }
-    // 30 bits, so that the sum of squares fits 62.
-    let zeros = largest.leading_zeros();
-    let mut n = [0i64; 3];
-    let mut squares = 0u64;
-    let mut i = 0;
-    while i < 3 {
-        n[i] = if zeros >= 34 { v[i] << (zeros - 34) } else { v[i] >> (34 - zeros) };
-        squares += (n[i] * n[i]) as u64;
-        i += 1;
-    }
-    let length = squares.isqrt() as i64;
-    Some([((n[0] << 30) / length) as i32, ((n[1] << 30) / length) as i32, ((n[2] << 30) / length) as i32])
 }
 
 /// A component of a unit vector, 30 fraction bits down to 14.
@@ -208,7 +316,7 @@ mod tests {
                 .near(bad)
                 .at(Vec3::lit(bad, bad, bad))
                 .look_at(Vec3::lit(bad, 0.0, bad), Vec3::lit(0.0, bad, bad));
-            assert!(camera.projection.focal.to_bits() >= MIN_FOCAL && camera.projection.near > 0);
+            assert!(camera.projection.focal.to_bits() >= 1 << 12 && camera.projection.near > 0);
         }
         let _ = Camera::perspective(Turn::ZERO, Size::new(0, u32::MAX));
         let same = Camera::focal(80.0, SIZE);

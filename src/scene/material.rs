@@ -1,13 +1,14 @@
 //! Materials: the shaders that come with the crate.
 
-use super::{Texture, Wrap};
-use crate::pipeline::{Affine, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Varying};
+use super::{Lights, Texture, Wrap};
+use crate::math::Pose;
+use crate::pipeline::{Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Varying};
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{Rgb565, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
-/// What a mesh looks like: one colour, a texture, or its vertices' colours.
+/// What a mesh looks like: one colour, a texture, or its vertices' colours; as it is, or in the light of some [`Lights`].
 ///
 /// The type parameter is the [quality](Quality); only the loops of the qualities that a program
 /// names are in its flash.
@@ -15,6 +16,10 @@ use embedded_graphics::prelude::RawData;
 pub struct Material<'a, Q = QuarterPixel> {
     surface: Surface<'a>,
     cull: Cull,
+    lights: Option<&'a Lights<'a>>,
+    faceted: bool,
+    two_sided: bool,
+    texture_scale: u8,
     quality: PhantomData<fn() -> Q>,
 }
 
@@ -36,7 +41,15 @@ impl<Q> Copy for Material<'_, Q> {}
 
 impl<'a> Material<'a> {
     const fn new(surface: Surface<'a>) -> Self {
-        Self { surface, cull: Cull::Back, quality: PhantomData }
+        Self {
+            surface,
+            cull: Cull::Back,
+            lights: None,
+            faceted: false,
+            two_sided: false,
+            texture_scale: 0,
+            quality: PhantomData,
+        }
     }
 
     /// One colour.
@@ -74,13 +87,47 @@ impl<'a, Q> Material<'a, Q> {
     /// The same in another quality.
     #[must_use]
     pub const fn quality<P>(self) -> Material<'a, P> {
-        Material { surface: self.surface, cull: self.cull, quality: PhantomData }
+        Material {
+            surface: self.surface,
+            cull: self.cull,
+            lights: self.lights,
+            faceted: self.faceted,
+            two_sided: self.two_sided,
+            texture_scale: self.texture_scale,
+            quality: PhantomData,
+        }
     }
 
     /// The same with other sides left out; without this, backs are.
     #[must_use]
     pub const fn cull(self, cull: Cull) -> Self {
         Self { cull, ..self }
+    }
+
+    /// The same in the light of some lights: once a vertex, by its normal, and blended between the vertices (Gouraud
+    /// shading). Colours and texels are multiplied by the light.
+    #[must_use]
+    pub const fn lit(self, lights: &'a Lights<'a>) -> Self {
+        Self { lights: Some(lights), ..self }
+    }
+
+    /// The same with the light of each triangle's middle on all of it, by the triangle's own normal (flat shading).
+    #[must_use]
+    pub const fn faceted(self) -> Self {
+        Self { faceted: true, ..self }
+    }
+
+    /// The same seen and lit from both sides.
+    #[must_use]
+    pub const fn two_sided(self) -> Self {
+        Self { cull: Cull::None, two_sided: true, ..self }
+    }
+
+    /// The same with texture coordinates times 2^`log2` (at most 2⁸): a plane that a mesh's coordinates of ±2048 texels
+    /// fill shows a texture of 64 texels 16384 times. For textures that repeat.
+    #[must_use]
+    pub const fn texture_scale(self, log2: u8) -> Self {
+        Self { texture_scale: if log2 > 8 { 8 } else { log2 }, ..self }
     }
 }
 
@@ -92,29 +139,45 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     }
 
     fn inputs(&self) -> Inputs {
-        match self.surface {
-            Surface::Flat(_) => Inputs::None,
-            Surface::Textured(_) => Inputs::Uv,
-            Surface::Gouraud => Inputs::Color,
+        match (&self.surface, self.lights) {
+            (Surface::Flat(_), None) => Inputs::None,
+            (Surface::Textured(_), None) => Inputs::Uv,
+            (Surface::Textured(_), Some(_)) => Inputs::UvColor,
+            (Surface::Flat(_) | Surface::Gouraud, _) => Inputs::Color,
         }
+    }
+
+    fn texture_scale(&self) -> u32 {
+        self.texture_scale.into()
+    }
+
+    fn coloring(&self, pose: &Pose) -> Coloring {
+        let Some(lights) = self.lights else {
+            return Coloring::default();
+        };
+        let base = match self.surface {
+            Surface::Flat(color) => Some(channels(color)),
+            Surface::Textured(_) => Some([255; 3]),
+            Surface::Gouraud => None,
+        };
+        Coloring::lit(base, lights.in_mesh_space(pose), self.faceted, self.two_sided)
     }
 
     fn color(&self, varying: &Varying) -> F::Word {
         let (u, v) = (varying.u.to_bits() >> 16, varying.v.to_bits() >> 16);
-        match &self.surface {
-            Surface::Flat(color) => F::rgb565(*color),
-            Surface::Textured(texture) => F::rgb565(match texture.wrapping() {
-                Wrap::Repeat => texture.fetch_repeat(u, v),
-                Wrap::Clamp => texture.fetch_clamp(u, v),
-            }),
-            Surface::Gouraud => gouraud::<F>(varying.color.map(|channel| channel.to_bits())),
+        let channels = varying.color.map(|channel| channel.to_bits());
+        match (&self.surface, self.lights) {
+            (Surface::Flat(color), None) => F::rgb565(*color),
+            (Surface::Textured(texture), None) => F::rgb565(texture.fetch(u, v)),
+            (Surface::Textured(texture), Some(_)) => lit::<F>(texture.fetch(u, v), channels),
+            (Surface::Flat(_) | Surface::Gouraud, _) => gouraud::<F>(channels),
         }
     }
 
     fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
-        match &self.surface {
-            Surface::Flat(color) => pixels.fill(F::rgb565(*color)),
-            Surface::Textured(texture) => match texture.wrapping() {
+        match (&self.surface, self.lights) {
+            (Surface::Flat(color), None) => pixels.fill(F::rgb565(*color)),
+            (Surface::Textured(texture), None) => match texture.wrapping() {
                 Wrap::Repeat => {
                     span.shade::<Q, F::Word, 2>(pixels, |[u, v]| {
                         F::rgb565(texture.fetch_repeat(u >> 16, v >> 16))
@@ -126,14 +189,40 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
                     });
                 }
             },
-            Surface::Gouraud => span.shade::<Q, F::Word, 3>(pixels, gouraud::<F>),
+            (Surface::Textured(texture), Some(_)) => {
+                span.shade::<Q, F::Word, 5>(pixels, |[u, v, red, green, blue]| {
+                    lit::<F>(texture.fetch(u >> 16, v >> 16), [red, green, blue])
+                });
+            }
+            (Surface::Flat(_) | Surface::Gouraud, _) => span.shade::<Q, F::Word, 3>(pixels, gouraud::<F>),
         }
     }
 }
 
-/// Channels in I16F16, 0 … 255, which `shade` promises.
+/// Channels in I16F16, 0 … 255.996, which `shade` promises.
 #[inline]
 fn gouraud<F: PixelFormat>(channels: [i32; 3]) -> F::Word {
     let [red, green, blue] = channels.map(|channel| (channel >> 16) as u8);
     F::rgb888(red, green, blue)
+}
+
+/// A texel times light, channels as of [`gouraud`].
+#[inline]
+fn lit<F: PixelFormat>(texel: u16, light: [i32; 3]) -> F::Word {
+    // 0 … 256, so that full light leaves a texel as it is.
+    let [red, green, blue] = light.map(|channel| {
+        let light = channel as u32 >> 16;
+        light + (light >> 7)
+    });
+    let texel = u32::from(texel);
+    let red = ((texel >> 11) * red) >> 8;
+    let green = (((texel >> 5) & 63) * green) >> 8;
+    let blue = ((texel & 31) * blue) >> 8;
+    F::rgb565((red << 11 | green << 5 | blue) as u16)
+}
+
+/// RGB565 as 8-bit channels, full as 255.
+const fn channels(color: u16) -> [u8; 3] {
+    let (red, green, blue) = (color >> 11, color >> 5 & 63, color & 31);
+    [(red << 3 | red >> 2) as u8, (green << 2 | green >> 4) as u8, (blue << 3 | blue >> 2) as u8]
 }

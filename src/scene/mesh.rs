@@ -108,7 +108,40 @@ const fn whole_texels(texels: i16) -> I12F4 {
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
     vertices: &'a [Vertex],
-    triangles: &'a [[u16; 3]],
+    triangles: Triangles<'a>,
+    bounds: Bounds,
+}
+
+/// Three indices into the vertices for each triangle.
+#[derive(Clone, Copy, Debug)]
+enum Triangles<'a> {
+    U8(&'a [[u8; 3]]),
+    U16(&'a [[u16; 3]]),
+}
+
+impl Triangles<'_> {
+    const fn len(&self) -> usize {
+        match self {
+            Self::U8(triangles) => triangles.len(),
+            Self::U16(triangles) => triangles.len(),
+        }
+    }
+
+    /// The triangle `i`, which is there.
+    const fn at(&self, i: usize) -> [u16; 3] {
+        match self {
+            Self::U8(triangles) => [triangles[i][0] as u16, triangles[i][1] as u16, triangles[i][2] as u16],
+            Self::U16(triangles) => triangles[i],
+        }
+    }
+}
+
+/// A sphere around all vertices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub(crate) center: [I4F12; 3],
+    /// I20F12 bits, at most √3·8.
+    pub(crate) radius: i32,
 }
 
 impl<'a> Mesh<'a> {
@@ -119,10 +152,17 @@ impl<'a> Mesh<'a> {
     /// Outside a `const`, on a triangle that names a vertex that is not there. See [`Mesh::try_new`].
     #[must_use]
     pub const fn new(vertices: &'a [Vertex], triangles: &'a [[u16; 3]]) -> Self {
-        match Self::try_new(vertices, triangles) {
-            Ok(mesh) => mesh,
-            Err(_) => panic!("a triangle of the mesh names a vertex that is not there"),
-        }
+        checked(Self::try_from(vertices, Triangles::U16(triangles)))
+    }
+
+    /// As [`Mesh::new`], for at most 256 vertices with indices of one byte.
+    ///
+    /// # Panics
+    ///
+    /// As [`Mesh::new`].
+    #[must_use]
+    pub const fn new_u8(vertices: &'a [Vertex], triangles: &'a [[u8; 3]]) -> Self {
+        checked(Self::try_from(vertices, Triangles::U8(triangles)))
     }
 
     /// A mesh from data that comes at run time.
@@ -131,11 +171,25 @@ impl<'a> Mesh<'a> {
     ///
     /// [`MeshError`] for the first triangle that names a vertex that is not there.
     pub const fn try_new(vertices: &'a [Vertex], triangles: &'a [[u16; 3]]) -> Result<Self, MeshError> {
+        Self::try_from(vertices, Triangles::U16(triangles))
+    }
+
+    /// As [`Mesh::try_new`], with indices of one byte.
+    ///
+    /// # Errors
+    ///
+    /// As [`Mesh::try_new`].
+    pub const fn try_new_u8(vertices: &'a [Vertex], triangles: &'a [[u8; 3]]) -> Result<Self, MeshError> {
+        Self::try_from(vertices, Triangles::U8(triangles))
+    }
+
+    const fn try_from(vertices: &'a [Vertex], triangles: Triangles<'a>) -> Result<Self, MeshError> {
         let mut triangle = 0;
         while triangle < triangles.len() {
+            let corners = triangles.at(triangle);
             let mut corner = 0;
             while corner < 3 {
-                let index = triangles[triangle][corner];
+                let index = corners[corner];
                 if index as usize >= vertices.len() {
                     return Err(MeshError { triangle, index });
                 }
@@ -143,7 +197,22 @@ impl<'a> Mesh<'a> {
             }
             triangle += 1;
         }
-        Ok(Self { vertices, triangles })
+        Ok(Self { vertices, triangles, bounds: Bounds::new(vertices) })
+    }
+
+    /// The triangles `start` … `end` − 1 alone (as far as there are such): a mesh with several materials is drawn
+    /// part by part.
+    #[must_use]
+    pub const fn part(self, start: usize, end: usize) -> Self {
+        const fn part<T>(triangles: &[T], start: usize, end: usize) -> &[T] {
+            let end = if end < triangles.len() { end } else { triangles.len() };
+            triangles.split_at(end).0.split_at(if start < end { start } else { end }).1
+        }
+        let triangles = match self.triangles {
+            Triangles::U8(triangles) => Triangles::U8(part(triangles, start, end)),
+            Triangles::U16(triangles) => Triangles::U16(part(triangles, start, end)),
+        };
+        Self { triangles, ..self }
     }
 
     /// The vertices.
@@ -154,20 +223,62 @@ impl<'a> Mesh<'a> {
 
     /// The triangles, three indices into [`Mesh::vertices`] each.
     #[must_use]
-    pub const fn triangles(&self) -> &'a [[u16; 3]] {
-        self.triangles
+    pub fn triangles(&self) -> impl ExactSizeIterator<Item = [u16; 3]> + use<'a> {
+        let triangles = self.triangles;
+        (0..triangles.len()).map(move |i| triangles.at(i))
     }
 
-    /// The three vertices of each triangle. Every index was checked when the mesh was made.
-    pub(crate) fn corners(&self) -> impl Iterator<Item = [&'a Vertex; 3]> {
-        let vertices = self.vertices;
-        self.triangles.iter().filter_map(move |&[a, b, c]| {
-            Some([
-                vertices.get(usize::from(a))?,
-                vertices.get(usize::from(b))?,
-                vertices.get(usize::from(c))?,
-            ])
-        })
+    /// A vertex that a triangle names: the index was checked when the mesh was made.
+    #[inline]
+    pub(crate) fn vertex(&self, index: u16) -> &'a Vertex {
+        const NONE: &Vertex = &Vertex::new(0.0, 0.0, 0.0);
+        self.vertices.get(usize::from(index)).unwrap_or(NONE)
+    }
+
+    pub(crate) const fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+}
+
+const fn checked(mesh: Result<Mesh<'_>, MeshError>) -> Mesh<'_> {
+    match mesh {
+        Ok(mesh) => mesh,
+        Err(_) => panic!("a triangle of the mesh names a vertex that is not there"),
+    }
+}
+
+impl Bounds {
+    /// The sphere around the middle of the bounding box, its radius rounded up.
+    const fn new(vertices: &[Vertex]) -> Self {
+        let mut center = [I4F12::ZERO; 3];
+        let mut axis = 0;
+        while axis < 3 {
+            let (mut low, mut high) = (i16::MAX, i16::MIN);
+            let mut i = 0;
+            while i < vertices.len() {
+                let at = vertices[i].position[axis].to_bits();
+                low = if at < low { at } else { low };
+                high = if at > high { at } else { high };
+                i += 1;
+            }
+            center[axis] = I4F12::from_bits(((low as i32 + high as i32) / 2) as i16);
+            axis += 1;
+        }
+        let mut most = 0;
+        let mut i = 0;
+        while i < vertices.len() {
+            let mut squares = 0u64;
+            let mut axis = 0;
+            while axis < 3 {
+                let d = (vertices[i].position[axis].to_bits() as i32 - center[axis].to_bits() as i32)
+                    .unsigned_abs() as u64;
+                squares += d * d;
+                axis += 1;
+            }
+            most = if squares > most { squares } else { most };
+            i += 1;
+        }
+        Self { center, radius: most.isqrt() as i32 + 1 }
     }
 }
 

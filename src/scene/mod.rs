@@ -1,12 +1,17 @@
 //! What a user describes: meshes, textures, materials, a camera.
 
 mod camera;
+mod light;
 mod material;
 mod mesh;
+mod projection;
+pub mod shapes;
 mod texture;
 
-pub use camera::Camera;
-pub(crate) use camera::Projection;
+pub use camera::{Camera, Projected};
+pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub use material::Material;
+pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError, Vertex};
+pub(crate) use projection::{Projection, Viewport};
 pub use texture::{Texture, TextureError, Wrap, texels};

@@ -105,6 +105,15 @@ impl<'a> Texture<'a> {
         self.texel(u, v)
     }
 
+    /// The texel at whole texel coordinates of any size.
+    #[inline]
+    pub(crate) fn fetch(&self, u: i32, v: i32) -> u16 {
+        match self.wrap {
+            Wrap::Repeat => self.fetch_repeat(u, v),
+            Wrap::Clamp => self.fetch_clamp(u, v),
+        }
+    }
+
     #[inline]
     fn texel(&self, u: u32, v: u32) -> u16 {
         // Always inside: u and v were wrapped and the length was checked.

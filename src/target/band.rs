@@ -3,9 +3,10 @@
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
 use crate::num::U1F31;
-use crate::pipeline::{Shader, Span, TriangleSetup};
+use crate::pipeline::{Shader, Span, TriangleSetup, Window};
 use core::convert::Infallible;
 use core::fmt;
+use core::ops::Range;
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Dimensions, Point, Size};
@@ -112,11 +113,16 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         bytemuck::must_cast_slice(self.pixels)
     }
 
-    /// Draws what a triangle covers of this band.
-    pub(crate) fn draw<S: Shader<F>>(&mut self, setup: &TriangleSetup, shader: &S) {
+    /// The part of the screen that it holds.
+    pub(crate) fn window(&self) -> Window {
         let top = i32::from(self.top);
-        let (width, height) = (usize::from(self.width), i32::from(self.height));
-        setup.rows(top..top + height, 0..i32::from(self.width), |y, columns| {
+        Window { columns: 0..i32::from(self.width), rows: top..top + i32::from(self.height) }
+    }
+
+    /// Draws what a triangle covers of a window of this band.
+    pub(crate) fn draw<S: Shader<F>>(&mut self, setup: &TriangleSetup, window: &Window, shader: &S) {
+        let (top, width) = (i32::from(self.top), usize::from(self.width));
+        setup.rows(window, |y, columns| {
             let row = (y - top) as usize * width;
             let words = row + columns.start as usize..row + columns.end as usize;
             let (Some(pixels), Some(depth)) = (self.pixels.get_mut(words.clone()), self.depth.get_mut(words))
@@ -164,6 +170,19 @@ fn draw_visible<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
 }
 
 impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
+    /// The columns and rows of an area that lie in the band. (`Rectangle::intersection` overflows on areas at the ends
+    /// of the coordinates.)
+    fn within(&self, area: &Rectangle) -> Option<(Range<i32>, Range<i32>)> {
+        let overlap = |start: i32, length: u32, band: Range<i32>| {
+            let end = (i64::from(start) + i64::from(length)).min(i64::from(band.end)) as i32;
+            let start = start.max(band.start);
+            (start < end).then_some(start..end)
+        };
+        let Window { columns, rows } = self.window();
+        let columns = overlap(area.top_left.x, area.size.width, columns)?;
+        Some((columns, overlap(area.top_left.y, area.size.height, rows)?))
+    }
+
     /// The words of the part of a row (of the screen) from column `x` on, `width` long; the
     /// rectangle that they come from lies inside.
     fn row_mut(&mut self, x: i32, y: i32, width: u32) -> &mut [F::Word] {
@@ -200,33 +219,32 @@ impl<F: PixelFormat, D: DepthFormat> DrawTarget for Band<'_, F, D> {
         I: IntoIterator<Item = F::Color>,
     {
         let mut colors = colors.into_iter();
-        let inside = self.bounding_box().intersection(area);
-        if inside.is_zero_sized() {
+        let Some((columns, rows)) = self.within(area) else {
             return Ok(());
-        }
-        let skipped = inside.top_left - area.top_left;
-        let (before, width) = (skipped.x as usize, area.size.width as usize);
-        let after = width - before - inside.size.width as usize;
-        // Rows above, then for each row what stands left and right of it.
-        let mut gap = (skipped.y as usize).saturating_mul(width).saturating_add(before);
-        for y in inside.rows() {
+        };
+        let inside = (columns.end - columns.start) as u32;
+        let width = area.size.width as usize;
+        // What the area has left and above; then for each row what it has right and, of the next, left.
+        let before = columns.start.wrapping_sub(area.top_left.x) as u32 as usize;
+        let above = rows.start.wrapping_sub(area.top_left.y) as u32 as usize;
+        let mut gap = above.saturating_mul(width).saturating_add(before);
+        for y in rows {
             if gap > 0 && colors.nth(gap - 1).is_none() {
                 return Ok(());
             }
-            for (word, color) in
-                self.row_mut(inside.top_left.x, y, inside.size.width).iter_mut().zip(&mut colors)
-            {
+            for (word, color) in self.row_mut(columns.start, y, inside).iter_mut().zip(&mut colors) {
                 *word = F::encode(color);
             }
-            gap = after + before;
+            gap = width - inside as usize;
         }
         Ok(())
     }
 
     fn fill_solid(&mut self, area: &Rectangle, color: F::Color) -> Result<(), Infallible> {
-        let inside = self.bounding_box().intersection(area);
-        for y in inside.rows() {
-            self.row_mut(inside.top_left.x, y, inside.size.width).fill(F::encode(color));
+        if let Some((columns, rows)) = self.within(area) {
+            for y in rows {
+                self.row_mut(columns.start, y, (columns.end - columns.start) as u32).fill(F::encode(color));
+            }
         }
         Ok(())
     }

@@ -1,0 +1,44 @@
+//! What became of what was drawn.
+
+/// What became of the meshes that [`Camera::draw_counted`](crate::Camera::draw_counted) drew. Counts add up
+/// over calls, and saturate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Meshes drawn, those left out included.
+    pub meshes: u32,
+    /// Meshes left out whole, because their bounding sphere was out of sight.
+    pub meshes_out_of_sight: u32,
+    /// Triangles of the other meshes.
+    pub triangles: u32,
+    /// How often a vertex was transformed; less than three times a triangle by what the vertex cache saved.
+    pub transformed: u32,
+    /// Triangles that were cut at a plane or at the guard band.
+    pub clipped: u32,
+    /// Triangles, or pieces of clipped ones, left out because they had no area or faced the wrong way.
+    pub culled: u32,
+    /// Triangles or pieces out of the viewport or of the band.
+    pub out_of_sight: u32,
+    /// Triangles left out because their numbers were too coarse for the guard band: so close to an eye with a near
+    /// plane of almost 0 that rounding moves them by hundreds of pixels.
+    pub rejected: u32,
+    /// Triangles or pieces drawn.
+    pub drawn: u32,
+}
+
+/// Where [`draw`](super::draw::draw) counts: in [`Stats`], or nowhere at no cost.
+pub(crate) trait Count {
+    fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32);
+}
+
+impl Count for () {
+    #[inline]
+    fn count(&mut self, _: impl FnOnce(&mut Stats) -> &mut u32) {}
+}
+
+impl Count for Stats {
+    #[inline]
+    fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32) {
+        let counter = what(self);
+        *counter = counter.saturating_add(1);
+    }
+}

@@ -1,0 +1,257 @@
+//! The promise, seen through the crate's own materials and the loops they are drawn with: the texel that is fetched is
+//! one that lies within the contract's bound of the exact texture coordinates, repeated or clamped, and the colour is
+//! within that bound of the exact one. Never one from outside the range of the triangle's three vertices.
+#![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
+
+mod common;
+mod reference;
+
+use std::cell::Cell;
+
+use common::generate::{strip, triangle};
+use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
+use fixel::embedded_graphics::pixelcolor::Rgb565;
+use fixel::embedded_graphics::pixelcolor::raw::RawU16;
+use fixel::{Cull, Material, NoDepth, Quality, Texture, TextureError, Wrap};
+use proptest::prelude::*;
+use reference::{Sample, Triangle, UNIT};
+
+/// log₂ of width and height.
+const SIZES: [(u32, u32); 10] =
+    [(0, 0), (0, 10), (10, 0), (1, 3), (3, 1), (4, 4), (5, 8), (8, 8), (9, 2), (10, 10)];
+
+/// A texture whose texels say in which column they are, and one for the rows.
+struct Chart {
+    log2: (u32, u32),
+    columns: Vec<u16>,
+    rows: Vec<u16>,
+}
+
+impl Chart {
+    fn new(log2: (u32, u32)) -> Self {
+        let (width, height) = (1 << log2.0, 1 << log2.1);
+        Self {
+            log2,
+            columns: (0..height).flat_map(|_| 0..width).collect(),
+            rows: (0..height).flat_map(|row| (0..width).map(move |_| row)).collect(),
+        }
+    }
+
+    fn textures(&self) -> [(Texture<'_>, u32); 2] {
+        [(&self.columns, self.log2.0), (&self.rows, self.log2.1)]
+            .map(|(texels, log2)| (Texture::new(texels, self.log2.0, self.log2.1), log2))
+    }
+}
+
+/// From where to where an attribute may be, in units of 2⁻¹⁶.
+fn tolerated(triangle: &Triangle, exact: &Sample<'_>, attribute: usize, bound: f64) -> (f64, f64) {
+    let off = bound * exact.change(attribute).step.max(UNIT);
+    let (low, high) = triangle.range(attribute);
+    let value = exact.attribute(attribute);
+    ((value - off).max(f64::from(low)), (value + off).min(f64::from(high)))
+}
+
+/// Whether a texel is met between two coordinates.
+fn met(texel: i64, side: i64, wrap: Wrap, (low, high): (f64, f64)) -> bool {
+    let (first, last) = ((low / UNIT).floor() as i64, (high / UNIT).floor() as i64);
+    match wrap {
+        Wrap::Repeat => last - first >= side || (first..=last).any(|place| place.rem_euclid(side) == texel),
+        Wrap::Clamp => (first.clamp(0, side - 1)..=last.clamp(0, side - 1)).contains(&texel),
+    }
+}
+
+fn draw<Q: Quality>(strip: Strip, triangle: &Triangle, material: &Material<'_, Q>) -> Vec<Drawn> {
+    let mut canvas = Canvas::new::<NoDepth>(strip);
+    canvas
+        .draw::<Recording, NoDepth, _>(triangle, Cull::None, material)
+        .expect("the triangle is within range");
+    canvas.pixels
+}
+
+fn textured<Q: Quality>(
+    name: &str,
+    usual: u32,
+    bound: f64,
+    quality: impl Fn(Material<'static>) -> Material<'static, Q>,
+) {
+    let charts: &'static [Chart] = Vec::leak(SIZES.map(Chart::new).into());
+    let (fetched, telling) = (Cell::new(0_u64), Cell::new(0_u64));
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip), 0..SIZES.len(), any::<bool>()));
+    for_all(name, usual, cases, |(strip, triangle, chart, clamp)| {
+        let wrap = if clamp { Wrap::Clamp } else { Wrap::Repeat };
+        for (attribute, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
+            let material = quality(Material::textured(&texture.wrap(wrap)));
+            for ((x, y), drawn) in strip.pixels().zip(draw(strip, &triangle, &material)) {
+                prop_assert_eq!(drawn.written, triangle.covers(x, y));
+                if !drawn.written {
+                    continue;
+                }
+                let texel = i64::from(drawn.attributes[0]);
+                let within = tolerated(&triangle, &triangle.at(x, y), attribute, bound);
+                let fits = met(texel, 1 << log2, wrap, within);
+                let (low, high) = (within.0 / UNIT, within.1 / UNIT);
+                prop_assert!(
+                    fits,
+                    "axis {} at {}, {}: texel {} of {} for a coordinate of {} … {}",
+                    attribute,
+                    x,
+                    y,
+                    texel,
+                    1 << log2,
+                    low,
+                    high
+                );
+                fetched.set(fetched.get() + 1);
+                telling.set(telling.get() + u64::from(high - low < f64::from(1 << log2) / 2.0));
+            }
+        }
+        Ok(())
+    });
+    println!(
+        "{name}: {} texels fetched, {} of them with at most half the texture to choose from",
+        fetched.get(),
+        telling.get()
+    );
+    assert!(telling.get() > 10 * u64::from(common::cases(usual)));
+}
+
+#[test]
+fn quarter_pixel_fetches_a_texel_within_the_bound_for_4_000_triangles() {
+    textured("texels, QuarterPixel", 4000, 0.25, |material| material);
+}
+
+#[test]
+fn exact_fetches_a_texel_within_the_bound_for_4_000_triangles() {
+    textured("texels, Exact", 4000, 0.02, Material::exact);
+}
+
+fn gouraud<Q: Quality>(name: &str, bound: f64, material: &Material<'_, Q>) {
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
+    for_all(name, 3000, cases, |(strip, triangle)| {
+        for ((x, y), drawn) in strip.pixels().zip(draw(strip, &triangle, material)) {
+            prop_assert_eq!(drawn.written, triangle.covers(x, y));
+            for channel in if drawn.written { 2..5 } else { 0..0 } {
+                let (low, high) = tolerated(&triangle, &triangle.at(x, y), channel, bound);
+                // A whole number of 1/255, rounded either way.
+                let within = (low / UNIT).floor()..=(high / UNIT).ceil();
+                let value = drawn.attributes[channel];
+                prop_assert!(
+                    within.contains(&f64::from(value)),
+                    "{} at {}, {}: {} in {:?}",
+                    channel,
+                    x,
+                    y,
+                    value,
+                    within
+                );
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn gouraud_blends_colors_within_the_bound_for_6_000_triangles() {
+    gouraud("colours, QuarterPixel", 0.25, &Material::gouraud());
+    gouraud("colours, Exact", 0.02, &Material::gouraud().exact());
+}
+
+#[test]
+fn affine_materials_stay_within_range_for_4_000_triangles() {
+    textured_within_range();
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
+    for_all("colours, Affine", 2000, cases, |(strip, triangle)| {
+        for drawn in draw(strip, &triangle, &Material::gouraud().affine()) {
+            for channel in if drawn.written { 2..5 } else { 0..0 } {
+                let (low, high) = triangle.range(channel);
+                prop_assert!((low >> 16..=high >> 16).contains(&drawn.attributes[channel]));
+            }
+        }
+        Ok(())
+    });
+}
+
+fn textured_within_range() {
+    let chart = Chart::new((10, 10));
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
+    for_all("texels, Affine", 2000, cases, |(strip, triangle)| {
+        for (attribute, (texture, log2)) in chart.textures().into_iter().enumerate() {
+            for wrap in [Wrap::Repeat, Wrap::Clamp] {
+                let (low, high) = triangle.range(attribute);
+                let within = (f64::from(low), f64::from(high));
+                for drawn in draw(strip, &triangle, &Material::textured(&texture.wrap(wrap)).affine()) {
+                    let texel = i64::from(drawn.attributes[0]);
+                    prop_assert!(!drawn.written || met(texel, 1 << log2, wrap, within));
+                }
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn flat_is_one_color_in_every_quality() {
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip), any::<u16>()));
+    for_all("flat", 1000, cases, |(strip, triangle, word)| {
+        let material = Material::flat(Rgb565::from(RawU16::new(word)));
+        let pictures = [
+            draw(strip, &triangle, &material),
+            draw(strip, &triangle, &material.exact()),
+            draw(strip, &triangle, &material.affine()),
+        ];
+        for ((x, y), index) in strip.pixels().zip(0..) {
+            let expected = if triangle.covers(x, y) { Some(i32::from(word)) } else { None };
+            for picture in &pictures {
+                let drawn = picture[index];
+                prop_assert_eq!(drawn.written.then_some(drawn.attributes[0]), expected);
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn textures_of_a_wrong_length_are_typed_errors() {
+    let sizes = (prop_oneof![0..12_u32, any::<u32>()], prop_oneof![0..12_u32, any::<u32>()], 0..3000_usize);
+    for_all("texture size", 10_000, sizes, |(width, height, slip)| {
+        let needed = (width <= 10 && height <= 10).then(|| 1_usize << (width + height));
+        let found = needed
+            .map_or(slip, |needed| (needed + slip / 2 * (slip % 2)).saturating_sub(slip / 3 * (slip % 2)));
+        let texels = vec![0; found];
+        let made = Texture::try_new(&texels, width, height).map(|_| ());
+        let expected = match needed {
+            None => Err(TextureError::TooLarge),
+            Some(expected) if expected != found => Err(TextureError::Length { expected, found }),
+            Some(_) => Ok(()),
+        };
+        prop_assert_eq!(made, expected);
+        Ok(())
+    });
+}
+
+#[test]
+fn pictures_of_4_texels_by_hand() {
+    // One texel a pixel, without perspective: repeated, the chart itself; clamped, its border around it.
+    let chart = Chart::new((1, 1));
+    let corner = |x: i32, y: i32| reference::Corner {
+        x: 16 * x,
+        y: 16 * y,
+        q: 1 << 30,
+        attributes: [x << 16, y << 16, 0, 0, 0],
+    };
+    let triangle = Triangle([corner(-20, -20), corner(-20, 40), corner(40, -20)]);
+    let strip = Strip::new(5, 1, 1);
+    let fetch = |wrap| {
+        let (texture, _) = chart.textures()[0];
+        let drawn = draw(strip, &triangle, &Material::textured(&texture.wrap(wrap)));
+        drawn.iter().map(|drawn| drawn.attributes[0]).collect::<Vec<_>>()
+    };
+    assert_eq!(fetch(Wrap::Repeat), [0, 1, 0, 1, 0]);
+    assert_eq!(fetch(Wrap::Clamp), [0, 1, 1, 1, 1]);
+    let mut record = Record::blank(strip);
+    record.record::<fixel::Exact>(&triangle, Cull::Back, fixel::Inputs::Uv);
+    let column = record.pixels.iter().map(|drawn| f64::from(drawn.attributes[0]) / UNIT);
+    for (value, expected) in column.zip([0.5, 1.5, 2.5, 3.5, 4.5]) {
+        assert!((value - expected).abs() < 0.02);
+    }
+}

@@ -1,0 +1,431 @@
+//! The promise: no input panics, none writes outside the target, none overflows. These tests run with overflow checks
+//! and debug assertions, and feed everything that a type can hold.
+
+mod common;
+mod reference;
+
+use common::generate::{GUARD_BAND, strip};
+use common::{Canvas, Counting, Drawn, Met, Record, Recorder, Recording, Strip, for_all, survives};
+use fixel::embedded_graphics::pixelcolor::Rgb565;
+use fixel::embedded_graphics::prelude::*;
+use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
+use fixel::{
+    Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, Exact, Inputs, Material, Mesh, MeshError,
+    NoDepth, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Texture, Turn, Vec3,
+    Vertex, Wrap,
+};
+use proptest::prelude::*;
+use reference::{Corner, Triangle};
+
+const CULLS: [Cull; 3] = [Cull::None, Cull::Back, Cull::Front];
+const INPUTS: [Inputs; 4] = [Inputs::None, Inputs::Uv, Inputs::Color, Inputs::UvColor];
+
+/// Any bits, the ends of the type and of its promised range more often.
+fn position() -> impl Strategy<Value = i16> {
+    let (low, high) = (*GUARD_BAND.start() as i16, *GUARD_BAND.end() as i16);
+    prop_oneof![
+        2 => any::<i16>(),
+        8 => low..=high,
+        4 => -200..1500_i16,
+        1 => prop_oneof![Just(i16::MIN), Just(i16::MAX), Just(low), Just(low - 1), Just(high), Just(high + 1), Just(0)],
+    ]
+}
+
+fn q() -> impl Strategy<Value = u32> {
+    prop_oneof![
+        3 => any::<u32>(),
+        3 => (any::<u32>(), 0..32_u32).prop_map(|(bits, shift)| bits >> shift),
+        1 => prop_oneof![Just(0), Just(1), Just(u32::MAX), Just(1 << 31), Just((1 << 31) - 1), Just((1 << 31) + 1)],
+    ]
+}
+
+fn texel() -> impl Strategy<Value = i32> {
+    let limit = 8192 << 16;
+    prop_oneof![
+        1 => any::<i32>(),
+        12 => -limit..=limit,
+        4 => -(64 << 16)..=64 << 16,
+        1 => prop_oneof![Just(i32::MIN), Just(i32::MAX), Just(limit + 1), Just(-limit - 1)],
+        2 => prop_oneof![Just(limit), Just(-limit), Just(0)],
+    ]
+}
+
+/// A vertex of any bits whatever.
+fn vertex() -> impl Strategy<Value = ScreenVertex> {
+    (position(), position(), q(), texel(), texel(), any::<[u16; 3]>()).prop_map(|(x, y, q, u, v, color)| {
+        ScreenVertex {
+            x: I12F4::from_bits(x),
+            y: I12F4::from_bits(y),
+            q: U1F31::from_bits(q),
+            u: I16F16::from_bits(u),
+            v: I16F16::from_bits(v),
+            color: color.map(U8F8::from_bits),
+        }
+    })
+}
+
+fn in_range(vertex: &ScreenVertex) -> bool {
+    let place = [vertex.x, vertex.y].map(|value| i32::from(value.to_bits()));
+    let texel = [vertex.u, vertex.v].map(|value| value.to_bits().unsigned_abs());
+    place.iter().all(|value| GUARD_BAND.contains(value)) && texel.iter().all(|value| *value <= 8192 << 16)
+}
+
+/// The same vertex for the reference. Distances saturate as `ScreenVertex` says.
+fn corner(vertex: &ScreenVertex) -> Corner {
+    let [r, g, b] = vertex.color.map(|channel| i32::from(channel.to_bits()) << 8);
+    Corner {
+        x: vertex.x.to_bits().into(),
+        y: vertex.y.to_bits().into(),
+        q: vertex.q.to_bits().clamp(1, (1 << 31) - 1),
+        attributes: [vertex.u.to_bits(), vertex.v.to_bits(), r, g, b],
+    }
+}
+
+/// Targets of few pixels, of none, and of one row or column.
+fn target() -> impl Strategy<Value = (Strip, u32)> {
+    let sizes = prop_oneof![
+        1 => (Just(0), 0..=1023_u32),
+        1 => (0..=1023_u32, Just(0)),
+        1 => (Just(1), 0..=1023_u32),
+        1 => (0..=1023_u32, Just(1)),
+        4 => (0..=60_u32, 0..=60_u32),
+        1 => strip().prop_map(|strip| (strip.width, strip.height)),
+    ];
+    let row = prop_oneof![4 => Just(0), 2 => 0..=1023_u32, 1 => any::<u32>()];
+    // A screen is at most 1023 rows high: the row of a band saturates there.
+    (sizes, row).prop_map(|((width, height), row)| (Strip::new(width, height, row.min(1023)), row))
+}
+
+/// More words than the target needs, to see that these stay as they are.
+const SPARE: usize = 70;
+
+/// What `draw_triangle` says, the pixels and the depths.
+type Outcome<P, D> = (Result<(), RangeError>, Vec<P>, Vec<D>);
+
+fn draw<F, D, S>(
+    (strip, row): (Strip, u32),
+    blank: (F::Word, D::Word),
+    vertices: &[ScreenVertex; 3],
+    cull: Cull,
+    shader: &S,
+) -> Outcome<F::Word, D::Word>
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    let (mut pixels, mut depth) = (vec![blank.0; strip.len() + SPARE], vec![blank.1; strip.len() + SPARE]);
+    let mut band = Band::<F, D>::new(strip.size(), &mut pixels, &mut depth)
+        .expect("the slices are long enough")
+        .starting_at(row);
+    let result = fixel::draw_triangle(vertices, cull, shader, &mut band);
+    (result, pixels, depth)
+}
+
+fn recorded<Q: Quality>(
+    target: (Strip, u32),
+    vertices: &[ScreenVertex; 3],
+    cull: Cull,
+    inputs: Inputs,
+) -> Result<(), TestCaseError> {
+    let blank = (Drawn::default(), Counting::CLEAR);
+    let shader = Recorder::<Q>::new(inputs);
+    let (result, pixels, depth) = draw::<Recording, Counting, _>(target, blank, vertices, cull, &shader);
+    let good = vertices.iter().all(in_range);
+    prop_assert_eq!(result.is_ok(), good);
+    let strip = target.0;
+    prop_assert!(
+        pixels[strip.len()..].iter().all(|drawn| *drawn == Drawn::default()),
+        "pixels past the target"
+    );
+    prop_assert!(depth[strip.len()..].iter().all(|met| *met == Counting::CLEAR), "depths past the target");
+    let triangle = Triangle([0, 1, 2].map(|i| corner(&vertices[i])));
+    let drawn = good && survives(triangle.facing(), cull);
+    let record = Record { strip, pixels, depth };
+    for ((x, y), pixel, met) in record.iter() {
+        let inside = drawn && triangle.covers(x, y);
+        prop_assert_eq!((pixel.written, met.times), (inside, u32::from(inside)), "at {}, {}", x, y);
+        if !inside {
+            prop_assert_eq!((pixel, met), (Drawn::default(), Met::default()));
+            continue;
+        }
+        prop_assert!(triangle.at(x, y).depth_error(met.q) <= 1.0, "q is {} at {}, {}", met.q, x, y);
+        let reads = match inputs {
+            Inputs::None => 0..0,
+            Inputs::Uv => 0..2,
+            Inputs::Color => 2..5,
+            Inputs::UvColor => 0..5,
+        };
+        for (attribute, value) in pixel.attributes.into_iter().enumerate() {
+            let (low, high) = if reads.contains(&attribute) { triangle.range(attribute) } else { (0, 0) };
+            prop_assert!(
+                (low..=high).contains(&value),
+                "attribute {} is {} at {}, {}, not {} … {}",
+                attribute,
+                value,
+                x,
+                y,
+                low,
+                high
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn triangles_of_any_bits_are_drawn_within_range_or_refused_30_000_cases() {
+    let vertices = prop_oneof![
+        6 => [vertex(), vertex(), vertex()],
+        // One vertex near another: slivers and small triangles with wild attributes.
+        3 => ([vertex(), vertex(), vertex()], -20..=20_i16, -20..=20_i16).prop_map(|([a, b, mut c], dx, dy)| {
+            c.x = I12F4::from_bits(b.x.to_bits().saturating_add(dx));
+            c.y = I12F4::from_bits(b.y.to_bits().saturating_add(dy));
+            [a, b, c]
+        }),
+    ];
+    let cases = (target(), vertices, 0..CULLS.len(), 0..INPUTS.len(), 0..3_u8);
+    for_all("vertices of any bits", 30_000, cases, |(target, vertices, cull, inputs, quality)| {
+        let (cull, inputs) = (CULLS[cull], INPUTS[inputs]);
+        match quality {
+            0 => recorded::<QuarterPixel>(target, &vertices, cull, inputs),
+            1 => recorded::<Exact>(target, &vertices, cull, inputs),
+            _ => recorded::<Affine>(target, &vertices, cull, inputs),
+        }
+    });
+}
+
+/// Every kind of material, in every quality, on every built-in format.
+fn on_all_formats<Q: Quality>(
+    target: (Strip, u32),
+    vertices: &[ScreenVertex; 3],
+    material: &Material<'_, Q>,
+) -> Result<(), TestCaseError> {
+    let good = vertices.iter().all(in_range);
+    let native = draw::<Rgb565, Depth16, _>(target, (0x1234, 0), vertices, Cull::None, material);
+    let swapped = draw::<BigEndian<Rgb565>, Depth16, _>(target, (0x3412, 0), vertices, Cull::None, material);
+    let flat = draw::<Rgb565, NoDepth, _>(target, (0x1234, ()), vertices, Cull::None, material);
+    prop_assert_eq!([native.0.is_ok(), swapped.0.is_ok(), flat.0.is_ok()], [good; 3]);
+    let triangle = Triangle([0, 1, 2].map(|i| corner(&vertices[i])));
+    // Depth or none, one byte order or the other: the same picture.
+    prop_assert_eq!(&native.1, &flat.1);
+    prop_assert_eq!(&native.2, &swapped.2);
+    if cfg!(target_endian = "little") {
+        prop_assert!(native.1.iter().map(|word| word.swap_bytes()).eq(swapped.1.iter().copied()));
+    }
+    for ((x, y), (word, depth)) in target.0.pixels().zip(native.1.iter().zip(&native.2)) {
+        let inside = good && triangle.covers(x, y);
+        prop_assert_eq!(*depth != 0, inside);
+        prop_assert!(inside || *word == 0x1234);
+    }
+    prop_assert!(native.1[target.0.len()..].iter().all(|word| *word == 0x1234), "pixels past the target");
+    prop_assert!(native.2[target.0.len()..].iter().all(|word| *word == 0), "depths past the target");
+    Ok(())
+}
+
+#[test]
+fn materials_on_triangles_of_any_bits_10_000_cases() {
+    let texels: Vec<u16> = (0..=u16::MAX).collect();
+    let sizes = [(0, 0), (8, 8), (10, 6), (6, 10), (3, 5)];
+    let cases = (target(), [vertex(), vertex(), vertex()], 0..4_u8, 0..3_u8, 0..sizes.len());
+    for_all("materials on vertices of any bits", 10_000, cases, |(target, vertices, kind, quality, size)| {
+        let (width, height) = sizes[size];
+        let texture = Texture::new(&texels[..1 << (width + height)], width, height);
+        let material = match kind {
+            0 => Material::flat(Rgb565::MAGENTA),
+            1 => Material::gouraud(),
+            2 => Material::textured(&texture),
+            _ => Material::textured(&texture.wrap(Wrap::Clamp)),
+        };
+        match quality {
+            0 => on_all_formats(target, &vertices, &material),
+            1 => on_all_formats(target, &vertices, &material.exact()),
+            _ => on_all_formats(target, &vertices, &material.affine()),
+        }
+    });
+}
+
+// The strategies below are boxed: nested ones of so many parts would not fit a test's stack otherwise.
+
+/// Any `f32`: ordinary ones, and what is not a number or too large.
+fn number() -> BoxedStrategy<f32> {
+    let special =
+        [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -0.0, f32::MAX, f32::MIN, f32::MIN_POSITIVE];
+    prop_oneof![
+        4 => -20.0..20.0_f32,
+        1 => prop::num::f32::ANY,
+        1 => prop::sample::select(special.to_vec()),
+        1 => prop_oneof![Just(32767.99), Just(32768.0), Just(-32768.0), Just(8.0), Just(-8.0)],
+    ]
+    .boxed()
+}
+
+fn vec3() -> BoxedStrategy<Vec3> {
+    prop_oneof![
+        3 => [number(), number(), number()].prop_map(|[x, y, z]| Vec3::lit(x, y, z)),
+        1 => any::<[i32; 3]>().prop_map(|bits| {
+            let [x, y, z] = bits.map(I16F16::from_bits);
+            Vec3::new(x, y, z)
+        }),
+    ]
+    .boxed()
+}
+
+fn turn() -> BoxedStrategy<Turn> {
+    prop_oneof![
+        any::<u16>().prop_map(Turn::from_raw),
+        any::<i32>().prop_map(Turn::from_degrees),
+        number().prop_map(Turn::from_radians),
+    ]
+    .boxed()
+}
+
+/// Any turn.
+fn turned() -> BoxedStrategy<Pose> {
+    [turn(), turn(), turn()]
+        .prop_map(|[x, y, z]| Pose::IDENTITY.rotated_x(x).rotated_y(y).rotated_z(z))
+        .boxed()
+}
+
+fn wild_pose() -> BoxedStrategy<Pose> {
+    let scale = prop_oneof![
+        2 => number().prop_map(|scale| Pose::IDENTITY.scaled_lit(scale).scale),
+        1 => any::<u32>().prop_map(U10F22::from_bits),
+        2 => Just(U10F22::ONE),
+    ];
+    let wild = any::<[[i16; 3]; 3]>().prop_map(|rows| rows.map(|row| row.map(I2F14::from_bits)));
+    let rotation = prop_oneof![3 => turned().prop_map(|pose| pose.rotation), 1 => wild];
+    (rotation, scale, vec3())
+        .prop_map(|(rotation, scale, translation)| Pose { rotation, scale, translation })
+        .boxed()
+}
+
+/// Any turn, a few units before a camera that stands where it is unless told otherwise.
+fn tame_pose() -> BoxedStrategy<Pose> {
+    (turned(), [-3.0..3.0_f32, -3.0..3.0, -9.0..1.0_f32], 0.1..8.0_f32)
+        .prop_map(|(pose, [x, y, z], scale)| pose.scaled_lit(scale).at(Vec3::lit(x, y, z)))
+        .boxed()
+}
+
+fn wild_camera() -> BoxedStrategy<Camera> {
+    let side = || prop_oneof![4 => 0..100_u32, 1 => any::<u32>(), 1 => 1000..1100_u32];
+    let size = || (side(), side()).prop_map(|(width, height)| Size::new(width, height));
+    let lens = prop_oneof![
+        (turn(), size()).prop_map(|(turn, size)| Camera::perspective(turn, size)),
+        (number(), size()).prop_map(|(focal, size)| Camera::focal(focal, size)),
+    ];
+    let looking = prop::option::of((vec3(), vec3(), vec3()));
+    (lens, prop::option::of(number()), looking, prop::option::of(wild_pose()))
+        .prop_map(|(mut camera, near, looking, pose)| {
+            if let Some(near) = near {
+                camera = camera.near(near);
+            }
+            if let Some(pose) = pose {
+                camera = camera.pose(pose);
+            }
+            if let Some((at, target, up)) = looking {
+                camera = camera.at(at).look_at(target, up);
+            }
+            camera
+        })
+        .boxed()
+}
+
+fn tame_camera() -> BoxedStrategy<Camera> {
+    (20..120_i32, (1..100_u32, 1..100_u32), 0.001..1.0_f32)
+        .prop_map(|(vertical, (width, height), near)| {
+            Camera::perspective(Turn::from_degrees(vertical), Size::new(width, height)).near(near)
+        })
+        .boxed()
+}
+
+fn mesh_vertex() -> BoxedStrategy<Vertex> {
+    let place = prop_oneof![
+        1 => [number(), number(), number()].prop_map(|[x, y, z]| Vertex::new(x, y, z)),
+        4 => [-1.0..1.0_f32, -1.0..1.0, -1.0..1.0].prop_map(|[x, y, z]| Vertex::new(x, y, z)),
+        1 => any::<[i16; 3]>().prop_map(|bits| {
+            Vertex { position: bits.map(I4F12::from_bits), ..Vertex::new(0.0, 0.0, 0.0) }
+        }),
+    ];
+    (place, any::<[u8; 3]>(), any::<[i16; 2]>(), any::<bool>())
+        .prop_map(|(vertex, [r, g, b], [u, v], whole)| {
+            let vertex = vertex.color(r, g, b);
+            if whole { vertex.uv(u, v) } else { Vertex { uv: [u, v].map(I12F4::from_bits), ..vertex } }
+        })
+        .boxed()
+}
+
+#[test]
+fn meshes_poses_and_cameras_of_any_numbers_20_000_cases() {
+    let texels: Vec<u16> = (0..=u16::MAX).collect();
+    let indices = prop::collection::vec(any::<[u16; 3]>(), 0..6);
+    let meshes = (prop::collection::vec(mesh_vertex(), 1..12), indices).prop_map(|(vertices, indices)| {
+        let count = vertices.len() as u16;
+        let indices: Vec<_> = indices.into_iter().map(|corners| corners.map(|index| index % count)).collect();
+        (vertices, indices)
+    });
+    let camera = prop_oneof![wild_camera(), tame_camera()];
+    let pose = prop_oneof![wild_pose(), tame_pose()];
+    let seeing = (40..=100_u32, 40..=100_u32).prop_map(|(width, height)| (Strip::new(width, height, 0), 0));
+    let target = prop_oneof![target().boxed(), seeing.boxed()];
+    let cases = (meshes.boxed(), camera, pose, target, 0..4_u8, 0..3_u8, 0..CULLS.len());
+    let seen = std::cell::Cell::new(0_u32);
+    for_all(
+        "camera.draw with any numbers",
+        20_000,
+        cases,
+        |(mesh, camera, pose, (strip, row), kind, quality, cull)| {
+            let mesh = Mesh::try_new(&mesh.0, &mesh.1).expect("the indices are in range");
+            let texture = Texture::new(&texels, 8, 8);
+            let material = match kind {
+                0 => Material::flat(Rgb565::MAGENTA),
+                1 => Material::gouraud(),
+                2 => Material::textured(&texture),
+                _ => Material::textured(&texture.wrap(Wrap::Clamp)),
+            }
+            .cull(CULLS[cull]);
+            let (mut pixels, mut depth) =
+                (vec![0x1234_u16; strip.len() + SPARE], vec![0_u16; strip.len() + SPARE]);
+            let mut band = Band::<Rgb565, Depth16>::new(strip.size(), &mut pixels, &mut depth)
+                .expect("the slices are long enough")
+                .starting_at(row);
+            match quality {
+                0 => camera.draw(&mesh, &pose, &material, &mut band),
+                1 => camera.draw(&mesh, &pose, &material.exact(), &mut band),
+                _ => camera.draw(&mesh, &pose, &material.affine(), &mut band),
+            }
+            seen.set(seen.get() + u32::from(depth.iter().any(|depth| *depth > 0)));
+            prop_assert!(pixels[strip.len()..].iter().all(|word| *word == 0x1234), "pixels past the target");
+            prop_assert!(depth[strip.len()..].iter().all(|word| *word == 0), "depths past the target");
+            // What has no depth was not drawn.
+            prop_assert!(pixels.iter().zip(&depth).all(|(word, depth)| *depth > 0 || *word == 0x1234));
+            Ok(())
+        },
+    );
+    println!("camera.draw with any numbers: {} of the scenes have a pixel to show", seen.get());
+    assert!(seen.get() > common::cases(20_000) / 20);
+}
+
+#[test]
+fn a_mesh_with_a_bad_index_is_a_typed_error_5_000_cases() {
+    let cases = (0..9_usize, prop::collection::vec([0..10_u16, 0..10_u16, 0..10_u16], 0..6));
+    for_all("indices", 5_000, cases, |(count, triangles)| {
+        let vertices = vec![Vertex::new(0.0, 0.0, 0.0); count];
+        let bad = triangles.iter().enumerate().find_map(|(triangle, corners)| {
+            let index = corners.iter().find(|index| usize::from(**index) >= count)?;
+            Some(MeshError { triangle, index: *index })
+        });
+        prop_assert_eq!(Mesh::try_new(&vertices, &triangles).err(), bad);
+        Ok(())
+    });
+}
+
+#[test]
+fn a_canvas_of_nothing_takes_a_triangle() {
+    let corner = |x, y| Corner { x, y, q: 1 << 30, attributes: [0; reference::ATTRIBUTES] };
+    let triangle = Triangle([corner(-500, -500), corner(-500, 900), corner(900, -500)]);
+    let mut canvas = Canvas::<Drawn, u16>::new::<Depth16>(Strip::new(0, 0, 0));
+    canvas
+        .draw::<Recording, Depth16, _>(&triangle, Cull::None, &Recorder::<Exact>::new(Inputs::Uv))
+        .expect("the triangle is within range");
+}
