@@ -52,6 +52,12 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
     ((wide(a, b) + (1 << (S - 1))) >> S) as i32
 }
 
+/// The upper 32 bits of `a · b`.
+#[inline]
+pub(crate) const fn mul_high(a: i32, b: i32) -> i32 {
+    (wide(a, b) >> 32) as i32
+}
+
 /// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.
 #[inline]
 pub(crate) const fn shift_round(value: i64, shift: u32) -> i64 {

@@ -41,8 +41,30 @@ impl Reciprocal {
     #[inline]
     pub(crate) fn coarse(divisor: u32) -> Self {
         let divisor = divisor.max(1);
-        let zeros = divisor.leading_zeros();
-        let m = divisor << zeros;
+        Self::normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
+    }
+
+    /// As [`Reciprocal::coarse`], for a divisor that has about as many leading zeros as the last one: Armv6-M has no
+    /// instruction that counts them, and the library routine takes 45 cycles.
+    #[inline]
+    pub(crate) fn coarse_near(divisor: u32, zeros: u32) -> Self {
+        if cfg!(not(all(target_arch = "arm", not(target_has_atomic = "32")))) {
+            return Self::coarse(divisor);
+        }
+        let divisor = divisor.max(1);
+        let mut zeros = zeros;
+        while zeros > 0 && divisor >> (32 - zeros) != 0 {
+            zeros -= 1;
+        }
+        while ((divisor << zeros) as i32) > 0 {
+            zeros += 1;
+        }
+        Self::normalised(divisor << zeros, zeros)
+    }
+
+    /// From the mantissa `m`, 2³¹ … 2³² − 1.
+    #[inline]
+    fn normalised(m: u32, zeros: u32) -> Self {
         let i = (m >> 22) as usize & (INTERVALS - 1);
         let (left, right) = (TABLE[i], TABLE[i + 1]);
         // 17 bits × 15 bits.

@@ -149,7 +149,7 @@ fn draw_oriented<F, D, S>(
 {
     let mut setup = TriangleSetup::new(triangle);
     let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set_planes(triangle, &Needs { inputs, perspective, texture_scale });
+    setup.set_planes(triangle, &Needs { inputs, perspective, texture_scale, depth: !D::ALWAYS_PASSES });
     band.draw(&setup, window, shader);
 }
 

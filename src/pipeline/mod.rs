@@ -8,6 +8,7 @@
 mod clip;
 mod color;
 mod draw;
+mod fill;
 mod setup;
 mod shade;
 mod span;
@@ -18,6 +19,7 @@ pub use clip::ScreenVertex;
 pub use color::Coloring;
 pub use draw::{RangeError, draw_triangle};
 pub(crate) use draw::{draw, project};
+pub(crate) use fill::Texels;
 pub use setup::Cull;
 pub(crate) use setup::TriangleSetup;
 pub use shade::{Affine, Exact, Inputs, Quality, QuarterPixel, Shader, Varying};

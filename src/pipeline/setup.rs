@@ -23,17 +23,19 @@
 //! - An error of k units in U (of 2⁻²⁹·max|U|) moves u by k·2⁻²⁹·max|U|/q ≤ k·2⁻²⁷·M·d.
 //! - The reciprocal's 2⁻²⁰ moves u by 2⁻¹⁹·M·d.
 //!
-//! A span starts with weights from the exact edge functions, which never cancel, not even in a
-//! sliver, and then adds a rounded step: k ≤ n/2 + 4 after n pixels. With d ≤ 2047 and n ≤ 1023 this is
-//! at most 0.02 px in the very worst case for any ratio of w, and a hundredth of it in ordinary ones.
+//! Each is kept as a plane: a value at pixel (0, 0) and one rounded step a column and a row, **in wrapping
+//! integers**. What the plane says far outside the triangle wraps, and wraps back: inside, where the true value fits 32
+//! bits, only the rounding of the steps remains, k ≤ (n + m)/2 + 16 after n columns and m rows from the nearest corner (or
+//! from where the screen begins, if it lies outside). With n, m ≤ 1023 and d ≤ 2047 the sum of all is 0.024 px in the very
+//! worst case for any ratio of w, and measured a tenth of it.
 //!
-//! A step may be too large for an `i32`. Then no span of the triangle has two pixels, since q and U stay
-//! within 2³¹ inside it, and the step is not used.
+//! In a sliver the steps are large and nearly cancel. Then a plane holds the values at the corners instead, and
+//! is evaluated by weights from the exact edge functions, which never cancel: slower, rare, and out of line.
 
 use super::clip::ScreenVertex;
 use super::shade::Inputs;
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, shift_round, wide};
+use crate::num::{mul_high, mul_round, shift_round, wide};
 
 /// Which side of a triangle is left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,6 +59,8 @@ pub(crate) struct TriangleSetup {
     pub(super) corners: [[i32; 2]; 3],
     /// 1 / (twice the area in 1/256 px²).
     area: Reciprocal,
+    /// Whether planes hold values at corners.
+    sliver: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(super) z: Plane,
     /// near/w scaled to 31 bits; for the division. All the same without perspective.
@@ -66,24 +70,35 @@ pub(crate) struct TriangleSetup {
     pub(super) attributes: [Attribute; ATTRIBUTES],
 }
 
-/// A linear function on the screen.
+const _: () = assert!(size_of::<TriangleSetup>() <= 240);
+
+/// A linear function on the screen, in integers that wrap.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Plane {
-    /// At corner 0, as an unsigned number.
+    /// At pixel (0, 0); of a sliver, at corner 0.
     origin: u32,
-    /// From corner 0 to corners 1 and 2.
-    rise: [i32; 2],
-    /// One pixel to the right.
-    pub(super) step: i32,
+    /// One column to the right, one row down; of a sliver, from corner 0 to corners 1 and 2.
+    steps: [i32; 2],
+}
+
+/// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
+struct Slopes {
+    /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
+    of_weights: [[i32; 2]; 2],
+    fraction_bits: i32,
+    /// Corner 0's pixel.
+    pixel: [i32; 2],
+    /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
+    to_center: [i32; 2],
+    /// From that pixel to the nearest on the screen.
+    to_screen: [i32; 2],
 }
 
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q at corners 1 and 2 (it is 0 at corner 0), in units of 2^`exponent` · (I16F16 · unit of q).
-    rise: [i32; 2],
-    /// One pixel to the right.
-    pub(super) step: i32,
+    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q).
+    pub(super) plane: Plane,
     exponent: i32,
     /// u₀, I16F16.
     base: i32,
@@ -95,12 +110,6 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
-    /// (u − u₀)·q where the weights are taken.
-    #[inline]
-    pub(super) fn at(&self, weights: Weights) -> i32 {
-        weights.of(self.rise)
-    }
-
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
     #[inline]
     pub(super) fn resolve(&self, value: i32, q: Reciprocal) -> i32 {
@@ -117,33 +126,14 @@ impl Attribute {
     }
 }
 
-/// Barycentric weights of corners 1 and 2, 1.0 = 2³¹ (saturated).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Weights([i32; 2]);
-
-const _: () = assert!(size_of::<TriangleSetup>() == 228);
-
-impl Plane {
-    /// The value where the weights are taken.
-    #[inline]
-    pub(super) fn at(&self, weights: Weights) -> u32 {
-        self.origin.wrapping_add_signed(weights.of(self.rise))
-    }
-}
-
-impl Weights {
-    #[inline]
-    fn of(self, rise: [i32; 2]) -> i32 {
-        mul_round::<31>(self.0[0], rise[0]).wrapping_add(mul_round::<31>(self.0[1], rise[1]))
-    }
-}
-
 /// What a shader wants of a triangle.
 pub(super) struct Needs {
     pub(super) inputs: Inputs,
     pub(super) perspective: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(super) texture_scale: u32,
+    /// Whether depth is tested.
+    pub(super) depth: bool,
 }
 
 /// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
@@ -184,6 +174,7 @@ impl TriangleSetup {
         Self {
             corners: triangle.vertices.map(position),
             area: Reciprocal::precise(triangle.area),
+            sliver: false,
             z: Plane::default(),
             q: Plane::default(),
             q_min: 0,
@@ -193,10 +184,19 @@ impl TriangleSetup {
 
     #[inline(never)]
     pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let Needs { inputs, perspective, texture_scale } = *needs;
+        let Needs { inputs, perspective, texture_scale, depth } = *needs;
         let vertices = triangle.vertices;
+        let slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
-        self.z = self.depth_plane(near_w);
+        if depth {
+            // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
+            // for that.
+            let z = near_w.map(|q| q.clamp(2048, (1 << 31) - 2048));
+            self.z = self.plane(&slopes, z[0], [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32));
+        }
+        if inputs == Inputs::None {
+            return;
+        }
         let q = if perspective {
             // The nearest corner gets all 31 bits.
             let near_w = near_w.map(|q| q.clamp(1, i32::MAX as u32));
@@ -204,13 +204,14 @@ impl TriangleSetup {
         } else {
             [1 << 30; 3]
         };
-        let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
-        self.q = Plane { origin: q[0], rise, step: self.step(rise, true) };
+        self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         self.q_min = q[1].min(q[2]).min(q[0]);
 
         let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            self.attributes[0] = self.attribute(vertices.map(|vertex| vertex.u.to_bits()), &q, texture_scale);
-            self.attributes[1] = self.attribute(vertices.map(|vertex| vertex.v.to_bits()), &q, texture_scale);
+            self.attributes[0] = self.attribute(&slopes, vertices.map(|vertex| vertex.u.to_bits()), &q);
+            self.attributes[1] = self.attribute(&slopes, vertices.map(|vertex| vertex.v.to_bits()), &q);
+            self.attributes[0].scale_log2 = texture_scale;
+            self.attributes[1].scale_log2 = texture_scale;
             2
         } else {
             0
@@ -218,51 +219,109 @@ impl TriangleSetup {
         if matches!(inputs, Inputs::Color | Inputs::UvColor) {
             for channel in 0..3 {
                 let at = vertices.map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8);
-                self.attributes[colors + channel] = self.attribute(at, &q, 0);
+                self.attributes[colors + channel] = self.attribute(&slopes, at, &q);
             }
         }
     }
 
-    /// The weights at a pixel centre inside the triangle: exact edge functions times 1/area.
+    /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
     #[inline]
-    pub(super) fn weights(&self, x: i32, y: i32) -> Weights {
+    pub(super) fn at(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+        let [right, down] = plane.steps;
+        if self.sliver {
+            return self.at_in_sliver(plane, x, y);
+        }
+        (plane.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down))), right)
+    }
+
+    /// By weights: exact edge functions times 1/area.
+    #[cold]
+    #[inline(never)]
+    fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
-        let weight = |edge_function: i32| {
+        let weighted = |edge_function: i32, rise: i32| {
             // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
-            wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30
+            let weight = wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
+            mul_round::<31>(weight.min(i64::from(i32::MAX)) as i32, rise)
         };
-        let b = weight((ax - cx) * py - (ay - cy) * px);
-        let c = weight((bx - ax) * py - (by - ay) * px);
-        Weights([b, c].map(|weight| weight.min(i64::from(i32::MAX)) as i32))
-    }
-
-    /// Depth must not leave 0 … 2³¹ however far it is stepped: its step is rounded towards
-    /// zero, and the last 64 units at both ends (1/512 of a depth step) are room for errors.
-    fn depth_plane(&self, near_w: [u32; 3]) -> Plane {
-        let [origin, b, c] = near_w.map(|q| q.clamp(64, (1 << 31) - 64));
-        let rise = [b, c].map(|z| z.wrapping_sub(origin) as i32);
-        Plane { origin, rise, step: self.step(rise, false) }
-    }
-
-    /// The change over one pixel to the right of what rises so from corner 0 to corners 1 and 2:
-    /// 16 · (rise₁·(y₂ − y₀) − rise₂·(y₁ − y₀)) / area, rounded to nearest or towards zero, saturated.
-    fn step(&self, rise: [i32; 2], nearest: bool) -> i32 {
-        let [[_, ay], [_, by], [_, cy]] = self.corners;
-        let sum = wide(cy - ay, rise[0]) - wide(by - ay, rise[1]);
-        // 31 bits of it, times 31 bits of 1/area.
+        let [b, c] = plane.steps;
+        let value = plane
+            .origin
+            .wrapping_add_signed(weighted((ax - cx) * py - (ay - cy) * px, b))
+            .wrapping_add_signed(weighted((bx - ax) * py - (by - ay) * px, c));
+        // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
+        // two pixels, since the value stays within 32 bits.
+        let sum = wide(cy - ay, b) - wide(by - ay, c);
         let magnitude = sum.unsigned_abs();
         let excess = 33u32.saturating_sub(magnitude.leading_zeros());
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
-        let shift = 58 - self.area.zeros - excess;
-        let quotient = if nearest { shift_round(product, shift) } else { product >> shift };
-        let step = quotient.min(i64::from(i32::MAX)) as i32;
-        if sum < 0 { -step } else { step }
+        let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
+        (value, if sum < 0 { -step } else { step })
+    }
+
+    /// Finds out whether it is a sliver, too.
+    fn slopes(&mut self, area: u32) -> Slopes {
+        let [a, b, c] = self.corners;
+        let edges = [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]];
+        let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
+        let (height, width) = (spread(edges[0]), spread(edges[1]));
+        // The largest difference to 30 bits, times 1/area.
+        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
+        let shift = largest.leading_zeros() - 2;
+        // Steps must fit 32 bits: at least a pixel wide and high. And their errors, three units of 2^−`fraction_bits` a
+        // pixel, must not exceed 512 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
+        self.sliver = height.max(width) * 16 > area || 2 * shift < 23 + self.area.zeros;
+        let pixel = a.map(|at| at >> 4);
+        Slopes {
+            of_weights: edges.map(|edge| edge.map(|e| (wide(e << shift, self.area.mantissa) >> 31) as i32)),
+            // (e·2^shift · mantissa / 2³¹) · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
+            fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
+            pixel,
+            to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
+            to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
+        }
+    }
+
+    /// From the value at corner 0 and the rise from there to corners 1 and 2.
+    #[inline(never)]
+    fn plane(&self, slopes: &Slopes, origin: u32, rise: [i32; 2]) -> Plane {
+        if self.sliver {
+            return Plane { origin, steps: rise };
+        }
+        let mut plane = Plane { origin, steps: [0; 2] };
+        for axis in 0..2 {
+            let [b, c] = slopes.of_weights[axis];
+            let slope = mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c));
+            let bits = slopes.fraction_bits;
+            let (step, rest) = if bits > 0 {
+                let step = ((slope >> (bits - 1)) + 1) >> 1;
+                // What rounding leaves, with at most 12 of its bits, over as far as the screen is away.
+                let rest = slope.wrapping_sub(step << bits);
+                (
+                    step,
+                    if bits > 12 {
+                        ((rest >> (bits - 12)) * slopes.to_screen[axis]) >> 12
+                    } else {
+                        (rest * slopes.to_screen[axis]) >> bits
+                    },
+                )
+            } else {
+                (slope << -bits, 0)
+            };
+            plane.steps[axis] = step;
+            plane.origin = plane
+                .origin
+                .wrapping_add_signed((step >> 4) * slopes.to_center[axis])
+                .wrapping_sub((slopes.pixel[axis].wrapping_mul(step)) as u32)
+                .wrapping_add_signed(rest);
+        }
+        plane
     }
 
     /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there.
     #[inline(never)]
-    fn attribute(&self, at: [i32; 3], q: &[u32; 3], scale_log2: u32) -> Attribute {
+    fn attribute(&self, slopes: &Slopes, at: [i32; 3], q: &[u32; 3]) -> Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
@@ -272,13 +331,12 @@ impl TriangleSetup {
             (if exponent >= 0 { shift_round(product, exponent as u32) } else { product << -exponent }) as i32
         });
         Attribute {
-            rise: scaled,
-            step: self.step(scaled, true),
+            plane: self.plane(slopes, 0, scaled),
             exponent,
             base: at[0],
             low: rise[0].min(rise[1]).min(0),
             high: rise[0].max(rise[1]).max(0),
-            scale_log2,
+            scale_log2: 0,
         }
     }
 }

@@ -14,12 +14,14 @@
 //! straight (q′ ≈ 0) are one affine run, and a strongly foreshortened wall divides every few pixels.
 
 use super::color::Coloring;
+use super::fill::{Each, Fill};
 use super::setup::{Attribute, Cull};
 use super::span::Span;
 use crate::math::Pose;
 use crate::math::recip::Reciprocal;
 use crate::num::{I16F16, wide};
 use crate::target::PixelFormat;
+use core::marker::PhantomData;
 
 /// How exactly perspective is followed between the pixels of a span: [`Exact`], [`QuarterPixel`]
 /// or [`Affine`].
@@ -168,9 +170,6 @@ pub trait Shader<F: PixelFormat> {
     }
 }
 
-/// The longest sub-span, log₂: beyond it nothing is gained.
-const MAX_LOG2: u32 = 5;
-
 /// A place in a span: q and the first `N` attributes' planes.
 struct Place<'a, const N: usize> {
     attributes: &'a [Attribute; N],
@@ -178,14 +177,17 @@ struct Place<'a, const N: usize> {
     q_step: i32,
     q_min: u32,
     values: [i32; N],
+    steps: [i32; N],
+    /// The leading zeros of q at the last place, which those at the next are close to.
+    zeros: u32,
 }
 
 impl<const N: usize> Place<'_, N> {
     #[inline]
     fn advance(&mut self, pixels: i32) {
         self.q = self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels));
-        for (value, attribute) in self.values.iter_mut().zip(self.attributes) {
-            *value = value.wrapping_add(attribute.step.wrapping_mul(pixels));
+        for (value, step) in self.values.iter_mut().zip(self.steps) {
+            *value = value.wrapping_add(step.wrapping_mul(pixels));
         }
     }
 
@@ -197,129 +199,134 @@ impl<const N: usize> Place<'_, N> {
 
     /// The attributes here, I16F16: one reciprocal.
     #[inline]
-    fn resolve(&self) -> [i32; N] {
-        let q = Reciprocal::coarse(self.bounded(self.q));
+    fn resolve(&mut self) -> [i32; N] {
+        let q = Reciprocal::coarse_near(self.bounded(self.q), self.zeros);
+        self.zeros = q.zeros;
         core::array::from_fn(|i| self.attributes[i].resolve(self.values[i], q))
     }
 
-    /// log₂ of the sub-span's length for the next `count` pixels: L² ≤ ¾·q/|q′|, where q is least.
-    #[inline]
-    fn sub_span_log2(&self, count: i32) -> SubSpans {
-        let end = self.q.wrapping_add_signed(self.q_step.wrapping_mul(count - 1));
-        let limit = self.bounded(self.q).min(self.bounded(end)) / 4 * 3;
-        let slope = self.q_step.unsigned_abs();
-        if wide((count - 1) * (count - 1), slope.min(i32::MAX as u32) as i32) <= i64::from(limit) {
-            return SubSpans::One;
+    /// The steps from `at` here to the attributes of the last of `count` pixels: exact at both.
+    #[inline(never)]
+    fn last_steps(&mut self, at: &[i32; N], count: usize) -> [i32; N] {
+        if count < 2 {
+            return [0; N];
         }
-        let mut log2 = MAX_LOG2;
-        while log2 > 0 && slope > limit >> (2 * log2) {
-            log2 -= 1;
-        }
-        SubSpans::Log2(log2)
+        self.advance(count as i32 - 1);
+        let last = self.resolve();
+        let inverse = inverse(count - 1);
+        core::array::from_fn(|i| {
+            let rise = last[i].wrapping_sub(at[i]);
+            let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
+            if rise < 0 { -size } else { size }
+        })
     }
-}
 
-enum SubSpans {
-    /// The whole span.
-    One,
-    /// 2^this pixels each.
-    Log2(u32),
+    /// Whether linear attributes over this many pixels from here are exact enough: L² ≤ ¾·q/|q′|, where q is least.
+    #[inline]
+    fn is_straight_for(&self, pixels: i32) -> bool {
+        let slope = self.q_step.unsigned_abs().min(i32::MAX as u32) as i32;
+        let end = self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels));
+        let least = self.bounded(if self.q_step < 0 { end } else { self.q });
+        wide(pixels * pixels, slope) <= i64::from(least / 4 * 3)
+    }
+
+    /// As [`Place::is_straight_for`] 2^`log2` pixels, at most 2⁸.
+    #[inline]
+    fn is_straight_for_log2(&self, log2: u32) -> bool {
+        let end = self.q.wrapping_add_signed(self.q_step << log2);
+        let least = self.bounded(if self.q_step < 0 { end } else { self.q });
+        self.q_step.unsigned_abs() <= ((least >> 2) * 3) >> (2 * log2)
+    }
 }
 
 impl Span<'_> {
     /// Fills pixels from this span's first one with `color` of the first `N` attributes, I16F16,
     /// which never leave the range of the triangle's corners.
-    ///
-    /// Not inlined: a shader that chooses between loops would need the stack of all of them.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn shade<Q: Quality, W, const N: usize>(
         &self,
         pixels: &mut [W],
         color: impl Fn([i32; N]) -> W,
     ) {
+        self.fill::<Q, N, _>(pixels, &Each(color, PhantomData));
+    }
+
+    /// As [`Span::shade`], run by run.
+    ///
+    /// Not inlined: a shader that chooses between loops would need the stack of all of them.
+    #[inline(never)]
+    pub(crate) fn fill<Q: Quality, const N: usize, L: Fill<N>>(&self, pixels: &mut [L::Word], fill: &L) {
         let setup = self.setup;
         let Some(attributes) = setup.attributes.first_chunk::<N>() else {
             return;
         };
-        let weights = setup.weights(self.x, self.y);
-        let mut place = Place {
-            attributes,
-            q: setup.q.at(weights),
-            q_step: setup.q.step,
-            q_min: setup.q_min,
-            values: core::array::from_fn(|i| attributes[i].at(weights)),
-        };
-        let sub_spans =
-            if Q::EVERY_PIXEL { SubSpans::Log2(0) } else { place.sub_span_log2(pixels.len() as i32) };
-        match sub_spans {
-            SubSpans::Log2(0) => {
-                for pixel in pixels {
-                    *pixel = color(place.resolve());
-                    place.advance(1);
-                }
-            }
-            SubSpans::Log2(log2) => {
-                let mut pixels = pixels;
-                let mut at = place.resolve();
-                // The next sub-span starts at a pixel of this span, so inside the triangle.
-                while pixels.len() > 1 << log2 {
-                    let (block, rest) = core::mem::take(&mut pixels).split_at_mut(1 << log2);
-                    place.advance(1 << log2);
-                    let next = place.resolve();
-                    // Towards zero, so that no pixel lies beyond `next`.
-                    let step = core::array::from_fn(|i| {
-                        let rise = next[i].wrapping_sub(at[i]);
-                        (rise + ((rise >> 31) & ((1 << log2) - 1))) >> log2
-                    });
-                    run(block, at, step, &color);
-                    (at, pixels) = (next, rest);
-                }
-                tail(pixels, at, place, &color);
-            }
-            SubSpans::One => {
-                let at = place.resolve();
-                tail(pixels, at, place, &color);
-            }
+        let (q, q_step) = setup.at(&setup.q, self.x, self.y);
+        let mut place =
+            Place { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
+        for (i, attribute) in attributes.iter().enumerate() {
+            let (value, step) = setup.at(&attribute.plane, self.x, self.y);
+            place.values[i] = value as i32;
+            place.steps[i] = step;
         }
+        if Q::EVERY_PIXEL {
+            for pixel in pixels {
+                *pixel = fill.pixel(place.resolve());
+                place.advance(1);
+            }
+            return;
+        }
+        let mut pixels = pixels;
+        let max_log2 = fill.max_log2();
+        let mut at = place.resolve();
+        if place.is_straight_for(pixels.len() as i32 - 1) {
+            let step = place.last_steps(&at, pixels.len());
+            for block in pixels.chunks_mut(1 << max_log2) {
+                fill.run(block, at, step);
+                at = core::array::from_fn(|i| at[i].wrapping_add(step[i] << max_log2));
+            }
+            return;
+        }
+        let mut log2 = max_log2;
+        loop {
+            // As long as this place allows: where q grows along the row, sub-spans grow too.
+            log2 = (log2 + 1).min(max_log2);
+            while log2 > 0 && !place.is_straight_for_log2(log2) {
+                log2 -= 1;
+            }
+            if pixels.len() <= 1 << log2 {
+                break;
+            }
+            // The next sub-span starts at a pixel of this span, so inside the triangle.
+            let (block, rest) = core::mem::take(&mut pixels).split_at_mut(1 << log2);
+            place.advance(1 << log2);
+            let next = place.resolve();
+            // Towards zero, so that no pixel lies beyond `next`.
+            let step = core::array::from_fn(|i| {
+                let rise = next[i].wrapping_sub(at[i]);
+                (rise + ((rise >> 31) & ((1 << log2) - 1))) >> log2
+            });
+            fill.run(block, at, step);
+            (at, pixels) = (next, rest);
+        }
+        let step = place.last_steps(&at, pixels.len());
+        fill.run(pixels, at, step);
     }
 }
 
-/// The last sub-span: exact at its first and at its last pixel.
-#[inline(never)]
-fn tail<W, const N: usize>(
-    pixels: &mut [W],
-    at: [i32; N],
-    mut place: Place<'_, N>,
-    color: &impl Fn([i32; N]) -> W,
-) {
-    let steps = pixels.len().saturating_sub(1) as i32;
-    let mut step = [0; N];
-    if steps > 0 {
-        place.advance(steps);
-        let last = place.resolve();
-        // 1/steps with 31 bits, rounded down, so that no pixel lies beyond `last`.
-        let reciprocal = Reciprocal::precise(steps as u32);
-        let inverse = (reciprocal.mantissa - 4) >> (31 - reciprocal.zeros);
-        step = core::array::from_fn(|i| {
-            let rise = last[i].wrapping_sub(at[i]);
-            let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
-            if rise < 0 { -size } else { size }
-        });
-    }
-    run(pixels, at, step, color);
-}
-
+/// 1/`steps` with 31 fraction bits, rounded down, so that no pixel lies beyond the last.
 #[inline]
-fn run<W, const N: usize>(
-    pixels: &mut [W],
-    mut at: [i32; N],
-    step: [i32; N],
-    color: &impl Fn([i32; N]) -> W,
-) {
-    for pixel in pixels {
-        *pixel = color(at);
-        for (value, step) in at.iter_mut().zip(step) {
-            *value = value.wrapping_add(step);
+fn inverse(steps: usize) -> i32 {
+    static TABLE: [i32; 32] = {
+        let mut table = [i32::MAX; 32];
+        let mut i = 1;
+        while i < 32 {
+            table[i] = i32::MAX / i as i32;
+            i += 1;
         }
-    }
+        table
+    };
+    TABLE.get(steps).copied().unwrap_or_else(|| {
+        let reciprocal = Reciprocal::coarse(steps as u32);
+        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
+    })
 }

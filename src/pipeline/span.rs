@@ -55,8 +55,7 @@ impl<'a> Span<'a> {
 
     /// q = near/w with 31 fraction bits at the first pixel, and its step.
     pub(crate) fn depth(&self) -> (u32, i32) {
-        let plane = &self.setup.z;
-        (plane.at(self.setup.weights(self.x, self.y)), plane.step)
+        self.setup.at(&self.setup.z, self.x, self.y)
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::{Lights, Texture, Wrap};
 use crate::math::Pose;
-use crate::pipeline::{Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Varying};
+use crate::pipeline::{
+    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Texels, Varying,
+};
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{Rgb565, raw::RawU16};
@@ -177,18 +179,21 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => pixels.fill(F::rgb565(*color)),
-            (Surface::Textured(texture), None) => match texture.wrapping() {
-                Wrap::Repeat => {
-                    span.shade::<Q, F::Word, 2>(pixels, |[u, v]| {
-                        F::rgb565(texture.fetch_repeat(u >> 16, v >> 16))
-                    });
+            (Surface::Textured(texture), None) => {
+                // Sizes with loops of their own, to which the bounds check is none.
+                if texture.wrapping() == Wrap::Repeat && !Q::EVERY_PIXEL {
+                    if let Some(texels) = Texels::<F, 0x1000>::new(texture) {
+                        return span.fill::<Q, 2, _>(pixels, &texels);
+                    }
+                    if let Some(texels) = Texels::<F, 0x400>::new(texture) {
+                        return span.fill::<Q, 2, _>(pixels, &texels);
+                    }
+                    if let Some(texels) = Texels::<F, 0x4000>::new(texture) {
+                        return span.fill::<Q, 2, _>(pixels, &texels);
+                    }
                 }
-                Wrap::Clamp => {
-                    span.shade::<Q, F::Word, 2>(pixels, |[u, v]| {
-                        F::rgb565(texture.fetch_clamp(u >> 16, v >> 16))
-                    });
-                }
-            },
+                span.shade::<Q, F::Word, 2>(pixels, |[u, v]| F::rgb565(texture.fetch(u >> 16, v >> 16)));
+            }
             (Surface::Textured(texture), Some(_)) => {
                 span.shade::<Q, F::Word, 5>(pixels, |[u, v, red, green, blue]| {
                     lit::<F>(texture.fetch(u >> 16, v >> 16), [red, green, blue])

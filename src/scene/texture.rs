@@ -85,6 +85,15 @@ impl<'a> Texture<'a> {
         embedded_graphics::geometry::Size::new(1 << self.log2_width, 1 << self.log2_height)
     }
 
+    /// log₂ of width and height.
+    pub(crate) const fn log2(&self) -> [u32; 2] {
+        [self.log2_width as u32, self.log2_height as u32]
+    }
+
+    pub(crate) const fn texels(&self) -> &'a [u16] {
+        self.texels
+    }
+
     pub(crate) const fn wrapping(&self) -> Wrap {
         self.wrap
     }
