@@ -5,9 +5,13 @@ use std::{env, fs, path::Path};
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=memory");
-    println!("cargo:rustc-check-cfg=cfg(board, values(\"lm3s6965evb\", \"microbit\"))");
+    println!("cargo:rustc-check-cfg=cfg(board, values(\"lm3s6965evb\", \"microbit\", \"mps2\"))");
     let var = |name| env::var(name).expect("cargo sets it for build scripts");
     let (board, memory) = match var("TARGET").as_str() {
+        // The boards on which every core's code can be counted.
+        target if target.starts_with("thumb") && env::var_os("CARGO_FEATURE_MPS2").is_some() => {
+            ("mps2", "memory/mps2.x")
+        }
         "thumbv7m-none-eabi" => ("lm3s6965evb", "memory/lm3s6965.x"),
         "thumbv6m-none-eabi" => ("microbit", "memory/nrf51822.x"),
         // A desktop: the library, its tests and the programs' host halves need no linker script.

@@ -137,7 +137,6 @@ impl Mul<i32> for Turn {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_arithmetic, reason = "the truth in f64")]
 mod tests {
     use super::*;
     use std::println;

@@ -3,6 +3,10 @@
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::prelude::*;
+use fixel::{
+    Light, Lights,
+    shapes::{self, Shape},
+};
 
 /// Width and height of every scene.
 pub const SIZE: Size = Size::new(160, 120);
@@ -95,6 +99,18 @@ const S2: Pose = Pose::IDENTITY
     .rotated_y(Turn::from_degrees(-40))
     .at(Vec3::lit(0.0, 0.0, -2.62));
 
+static TORUS: Shape<500, 1000> = shapes::torus(1.0, 0.45, 25, 20);
+static TEXTURED_TORUS: Shape<546, 1000> = shapes::torus_textured(1.0, 0.45, 25, 20, [256, 64]);
+/// Checked once, by the compiler.
+static TORUS_MESH: Mesh = TORUS.mesh();
+static TEXTURED_TORUS_MESH: Mesh = TEXTURED_TORUS.mesh();
+const S3: Pose = Pose::IDENTITY
+    .rotated_x(Turn::from_degrees(-50))
+    .rotated_y(Turn::from_degrees(-25))
+    .at(Vec3::lit(0.0, 0.0, -2.44));
+static SUN: [Light; 1] = [Light::directional(Vec3::lit(-0.4, -0.6, -0.7), [208, 208, 208])];
+static LIGHTS: Lights = Lights::new([40, 40, 40], &SUN);
+
 /// A frame without depth.
 pub type Flat<'a> = Band<'a, Rgb565, NoDepth>;
 /// A frame with depth.
@@ -119,4 +135,74 @@ pub fn s1_ground(frame: &mut Flat<'_>) {
 #[inline(always)]
 pub fn s2(frame: &mut Deep<'_>) {
     CAMERA.draw(&CUBE, &S2, &Material::textured(&WALL), frame);
+}
+
+/// s3: the torus, Gouraud shaded.
+#[inline(always)]
+pub fn s3(frame: &mut Deep<'_>) {
+    CAMERA.draw(&TORUS_MESH, &S3, &Material::gouraud().lit(&LIGHTS), frame);
+}
+
+/// s3_tex: the same, its light on a texture.
+#[inline(always)]
+pub fn s3_tex(frame: &mut Deep<'_>) {
+    CAMERA.draw(&TEXTURED_TORUS_MESH, &S3, &Material::textured(&WALL).lit(&LIGHTS), frame);
+}
+
+/// Pixels that s1 covers.
+pub const S1_PIXELS: u32 = 12_510;
+/// Pixels that s1_roll30 covers.
+pub const S1_ROLL30_PIXELS: u32 = 11_366;
+/// Pixels that s1_roll90 covers.
+pub const S1_ROLL90_PIXELS: u32 = 9_996;
+/// Pixels that s1_ground covers.
+pub const S1_GROUND_PIXELS: u32 = 11_360;
+/// Pixels that s2 covers.
+pub const S2_PIXELS: u32 = 6_744;
+/// Pixels that s3 and s3_tex cover.
+pub const S3_PIXELS: u32 = 6_826;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixels that a scene covers, counted where it changes one of two grounds.
+    fn covered(scene: impl Fn(&mut Flat<'_>)) -> u32 {
+        let grounds = [0, 0xffff].map(|ground| {
+            let mut pixels = vec![ground; PIXELS];
+            scene(&mut Band::new(SIZE, &mut pixels, &mut [(); PIXELS]).expect("the size fits"));
+            pixels
+        });
+        grounds[0].iter().zip(&grounds[1]).filter(|(a, b)| a == b).count() as u32
+    }
+
+    fn covered_deep(scene: impl Fn(&mut Deep<'_>)) -> u32 {
+        let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
+        scene(&mut Band::new(SIZE, &mut pixels, &mut depth).expect("the size fits"));
+        depth.iter().filter(|&&depth| depth != 0).count() as u32
+    }
+
+    #[test]
+    fn the_scenes_cover_what_bench_returns() {
+        assert_eq!(
+            [
+                covered(|frame| s1(Turn::ZERO, frame)),
+                covered(|frame| s1(Turn::from_degrees(30), frame)),
+                covered(|frame| s1(Turn::from_degrees(90), frame)),
+                covered(s1_ground),
+                covered_deep(s2),
+                covered_deep(s3),
+                covered_deep(s3_tex),
+            ],
+            [
+                S1_PIXELS,
+                S1_ROLL30_PIXELS,
+                S1_ROLL90_PIXELS,
+                S1_GROUND_PIXELS,
+                S2_PIXELS,
+                S3_PIXELS,
+                S3_PIXELS
+            ]
+        );
+    }
 }
