@@ -72,6 +72,7 @@
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Shader`], of which [`Material`] is the one that comes with the crate.
 #![no_std]
+#![forbid(unsafe_code)]
 #![warn(unreachable_pub)]
 
 #[cfg(test)]
