@@ -3,7 +3,7 @@
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::setup::{Cull, Needs, Oriented, TriangleSetup};
-use super::shade::{Quality, Shader};
+use super::shade::{NO_PERSPECTIVE, Quality, Shader};
 use super::span::Window;
 use super::stats::Count;
 use super::transform::ToClip;
@@ -42,7 +42,7 @@ pub(crate) fn draw<F, D, S>(
     // The vertex cache, and whose each vertex is. Clipping borrows its memory for the corners of a polygon.
     let mut cache = [ScreenVertex::default(); MOST_CORNERS];
     let mut owners = [NOBODY; CACHED];
-    let perspective = S::Quality::PERSPECTIVE && !projection.orthographic;
+    let straight = if projection.orthographic { NO_PERSPECTIVE } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
         let mut triangle = [ScreenVertex::default(); 3];
@@ -86,7 +86,7 @@ pub(crate) fn draw<F, D, S>(
             if let Some(triangle) = Oriented::new(&triangle, shader.cull()) {
                 if window.touches(&triangle) {
                     stats.count(|stats| &mut stats.drawn);
-                    draw_oriented(&triangle, perspective, shader, band, &window);
+                    draw_oriented(&triangle, straight, shader, band, &window);
                 } else {
                     stats.count(|stats| &mut stats.out_of_sight);
                 }
@@ -130,7 +130,7 @@ where
     }
     let window = band.window();
     if let Some(triangle) = Oriented::new(vertices, cull) {
-        draw_oriented(&triangle, S::Quality::PERSPECTIVE, shader, band, &window);
+        draw_oriented(&triangle, S::Quality::STRAIGHT, shader, band, &window);
     }
     Ok(())
 }
@@ -138,7 +138,7 @@ where
 #[inline(never)]
 fn draw_oriented<F, D, S>(
     triangle: &Oriented<'_>,
-    perspective: bool,
+    straight: (u32, u32),
     shader: &S,
     band: &mut Band<'_, F, D>,
     window: &Window,
@@ -149,7 +149,7 @@ fn draw_oriented<F, D, S>(
 {
     let mut setup = TriangleSetup::new(triangle);
     let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set_planes(triangle, &Needs { inputs, perspective, texture_scale, depth: !D::ALWAYS_PASSES });
+    setup.set_planes(triangle, &Needs { inputs, straight, texture_scale, depth: !D::ALWAYS_PASSES });
     band.draw(&setup, window, shader);
 }
 

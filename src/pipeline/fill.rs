@@ -8,15 +8,20 @@ use core::marker::PhantomData;
 pub(crate) trait Fill<const N: usize> {
     type Word;
 
-    /// The longest run, log₂, over which [`Fill::run`] is exact enough.
-    const MAX_LOG2: u32 = 5;
-
+    /// The longest run, log₂, over which [`Fill::run`] is exact enough, and beyond which nothing is gained.
+    #[inline]
     fn max_log2(&self) -> u32 {
-        Self::MAX_LOG2
+        5
     }
 
     /// One pixel.
     fn pixel(&self, at: [i32; N]) -> Self::Word;
+
+    /// Any number of pixels side by side, likewise.
+    #[inline]
+    fn run_long(&self, pixels: &mut [Self::Word], at: [i32; N], step: [i32; N]) {
+        self.run(pixels, at, step);
+    }
 
     /// At most 2^`max_log2` pixels side by side, the first at `at`, each `step` further.
     #[inline]
@@ -98,6 +103,15 @@ impl<F: PixelFormat, const COUNT: usize> Fill<2> for Texels<'_, F, COUNT> {
     fn pixel(&self, [u, v]: [i32; 2]) -> F::Word {
         let packed = (((v >> self.log2[1]) as u32) << 16) | ((u >> self.log2[0]) as u32 & 0xffff);
         self.texel(packed)
+    }
+
+    #[inline]
+    fn run_long(&self, pixels: &mut [F::Word], [mut u, mut v]: [i32; 2], step: [i32; 2]) {
+        let log2 = self.max_log2();
+        for block in pixels.chunks_mut(1 << log2) {
+            self.run(block, [u, v], step);
+            (u, v) = (u.wrapping_add(step[0] << log2), v.wrapping_add(step[1] << log2));
+        }
     }
 
     #[inline]

@@ -61,9 +61,11 @@ pub(crate) struct TriangleSetup {
     area: Reciprocal,
     /// Whether planes hold values at corners.
     sliver: bool,
+    /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
+    pub(super) straight: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(super) z: Plane,
-    /// near/w scaled to 31 bits; for the division. All the same without perspective.
+    /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(super) q: Plane,
     /// The least q of the corners.
     pub(super) q_min: u32,
@@ -92,12 +94,14 @@ struct Slopes {
     to_center: [i32; 2],
     /// From that pixel to the nearest on the screen.
     to_screen: [i32; 2],
+    /// Width and height of the bounding box together, in 1/16 px.
+    extent: u32,
 }
 
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q).
+    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle, u − u₀ in I16F16.
     pub(super) plane: Plane,
     exponent: i32,
     /// u₀, I16F16.
@@ -122,14 +126,61 @@ impl Attribute {
             let exponent = exponent.min(31);
             product.clamp(self.low >> exponent, self.high >> exponent) << exponent
         };
+        self.finish(offset)
+    }
+
+    /// The attribute in I16F16 from u − u₀.
+    #[inline]
+    fn finish(&self, offset: i32) -> i32 {
         (self.base + offset.clamp(self.low, self.high)) << self.scale_log2
     }
+
+    /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
+    /// outside the corners' range, even where rounding takes the plane there.
+    #[inline]
+    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let (first, last) = (value as i32, (value as i32).wrapping_add(step.wrapping_mul(steps)));
+        let range = self.low..=self.high;
+        if range.contains(&first) && range.contains(&last) {
+            return ((self.base + first) << self.scale_log2, step << self.scale_log2);
+        }
+        self.along_border(first, last, steps)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+        let rise = last.clamp(self.low, self.high) - first.clamp(self.low, self.high);
+        let step = wide(rise.wrapping_abs(), inverse(steps.max(1) as usize)) >> 31;
+        let step = if rise < 0 { -(step as i32) } else { step as i32 };
+        (self.finish(first), step << self.scale_log2)
+    }
+}
+
+/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
+#[inline]
+pub(super) fn inverse(steps: usize) -> i32 {
+    static TABLE: [i32; 32] = {
+        let mut table = [i32::MAX; 32];
+        let mut i = 1;
+        while i < 32 {
+            table[i] = i32::MAX / i as i32;
+            i += 1;
+        }
+        table
+    };
+    TABLE.get(steps).copied().unwrap_or_else(|| {
+        let reciprocal = Reciprocal::coarse(steps as u32);
+        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
+    })
 }
 
 /// What a shader wants of a triangle.
 pub(super) struct Needs {
     pub(super) inputs: Inputs,
-    pub(super) perspective: bool,
+    /// How nearly the same q has to be at the corners for attributes to count as linear: see
+    /// [`Quality::STRAIGHT`](super::shade::Quality::STRAIGHT).
+    pub(super) straight: (u32, u32),
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(super) texture_scale: u32,
     /// Whether depth is tested.
@@ -175,6 +226,7 @@ impl TriangleSetup {
             corners: triangle.vertices.map(position),
             area: Reciprocal::precise(triangle.area),
             sliver: false,
+            straight: false,
             z: Plane::default(),
             q: Plane::default(),
             q_min: 0,
@@ -184,7 +236,7 @@ impl TriangleSetup {
 
     #[inline(never)]
     pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let Needs { inputs, perspective, texture_scale, depth } = *needs;
+        let Needs { inputs, straight, texture_scale, depth } = *needs;
         let vertices = triangle.vertices;
         let slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
@@ -197,15 +249,18 @@ impl TriangleSetup {
         if inputs == Inputs::None {
             return;
         }
-        let q = if perspective {
-            // The nearest corner gets all 31 bits.
-            let near_w = near_w.map(|q| q.clamp(1, i32::MAX as u32));
-            near_w.map(|q| q << (near_w[0].leading_zeros() - 1))
-        } else {
-            [1 << 30; 3]
-        };
-        self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
-        self.q_min = q[1].min(q[2]).min(q[0]);
+        // The nearest corner gets all 31 bits.
+        let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
+        let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
+        self.q_min = q[1].min(q[2]);
+        // (width + height)·(q_max − q_min) ≤ straight · q_min, in 1/16 px.
+        let extent = slopes.extent.saturating_mul(straight.1);
+        self.straight = extent == 0
+            || wide((q[0] - self.q_min) as i32 >> 4, extent as i32)
+                <= i64::from(self.q_min) * i64::from(straight.0);
+        if !self.straight {
+            self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        }
 
         let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
             self.attributes[0] = self.attribute(&slopes, vertices.map(|vertex| vertex.u.to_bits()), &q);
@@ -266,6 +321,8 @@ impl TriangleSetup {
         let edges = [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]];
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
         let (height, width) = (spread(edges[0]), spread(edges[1]));
+        // The bounding box: `e` leads from corner 0 to one corner and back from the other.
+        let size = |e: [i32; 2]| (e[0].max(0).max(-e[1]) - e[0].min(0).min(-e[1])) as u32;
         // The largest difference to 30 bits, times 1/area.
         let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
         let shift = largest.leading_zeros() - 2;
@@ -280,6 +337,7 @@ impl TriangleSetup {
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
             to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
+            extent: edges.map(size).iter().sum(),
         }
     }
 
@@ -323,6 +381,18 @@ impl TriangleSetup {
     #[inline(never)]
     fn attribute(&self, slopes: &Slopes, at: [i32; 3], q: &[u32; 3]) -> Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
+        let mut attribute = Attribute {
+            plane: Plane::default(),
+            exponent: 0,
+            base: at[0],
+            low: rise[0].min(rise[1]).min(0),
+            high: rise[0].max(rise[1]).max(0),
+            scale_log2: 0,
+        };
+        if self.straight {
+            attribute.plane = self.plane(slopes, 0, rise);
+            return attribute;
+        }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger.
@@ -330,14 +400,9 @@ impl TriangleSetup {
         let scaled = products.map(|product| {
             (if exponent >= 0 { shift_round(product, exponent as u32) } else { product << -exponent }) as i32
         });
-        Attribute {
-            plane: self.plane(slopes, 0, scaled),
-            exponent,
-            base: at[0],
-            low: rise[0].min(rise[1]).min(0),
-            high: rise[0].max(rise[1]).max(0),
-            scale_log2: 0,
-        }
+        attribute.plane = self.plane(slopes, 0, scaled);
+        attribute.exponent = exponent;
+        attribute
     }
 }
 

@@ -15,7 +15,7 @@
 
 use super::color::Coloring;
 use super::fill::{Each, Fill};
-use super::setup::{Attribute, Cull};
+use super::setup::{Attribute, Cull, inverse};
 use super::span::Span;
 use crate::math::Pose;
 use crate::math::recip::Reciprocal;
@@ -29,9 +29,11 @@ use core::marker::PhantomData;
 /// The error is measured in pixels on the screen: the error of an attribute, divided by
 /// its largest change over one pixel step (at least 1 texel or 1/255).
 pub trait Quality: sealed::Sealed {
-    /// Whether the division by w takes place at all.
+    /// A triangle is straight, its attributes counting as linear on the screen, if
+    /// (width + height)·(q_max − q_min) ≤ this fraction · q_min. It displaces them by at most ¼ · that fraction · q_max/q_min
+    /// pixels: linear and exact interpolation differ by the covariance of u and q under the weights, divided by q.
     #[doc(hidden)]
-    const PERSPECTIVE: bool;
+    const STRAIGHT: (u32, u32);
     /// Whether it takes place at every pixel.
     #[doc(hidden)]
     const EVERY_PIXEL: bool;
@@ -50,19 +52,22 @@ pub struct QuarterPixel;
 pub struct Affine;
 
 impl Quality for Exact {
-    const PERSPECTIVE: bool = true;
+    const STRAIGHT: (u32, u32) = (1, 32);
     const EVERY_PIXEL: bool = true;
 }
 
 impl Quality for QuarterPixel {
-    const PERSPECTIVE: bool = true;
+    const STRAIGHT: (u32, u32) = (3, 4);
     const EVERY_PIXEL: bool = false;
 }
 
 impl Quality for Affine {
-    const PERSPECTIVE: bool = false;
+    const STRAIGHT: (u32, u32) = NO_PERSPECTIVE;
     const EVERY_PIXEL: bool = false;
 }
+
+/// Every triangle is straight.
+pub(super) const NO_PERSPECTIVE: (u32, u32) = (1, 0);
 
 mod sealed {
     pub trait Sealed {}
@@ -260,6 +265,14 @@ impl Span<'_> {
         let Some(attributes) = setup.attributes.first_chunk::<N>() else {
             return;
         };
+        if setup.straight {
+            let (mut at, mut step) = ([0; N], [0; N]);
+            for (i, attribute) in attributes.iter().enumerate() {
+                let plane = setup.at(&attribute.plane, self.x, self.y);
+                (at[i], step[i]) = attribute.along(plane, pixels.len() as i32 - 1);
+            }
+            return fill.run_long(pixels, at, step);
+        }
         let (q, q_step) = setup.at(&setup.q, self.x, self.y);
         let mut place =
             Place { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
@@ -280,11 +293,7 @@ impl Span<'_> {
         let mut at = place.resolve();
         if place.is_straight_for(pixels.len() as i32 - 1) {
             let step = place.last_steps(&at, pixels.len());
-            for block in pixels.chunks_mut(1 << max_log2) {
-                fill.run(block, at, step);
-                at = core::array::from_fn(|i| at[i].wrapping_add(step[i] << max_log2));
-            }
-            return;
+            return fill.run_long(pixels, at, step);
         }
         let mut log2 = max_log2;
         loop {
@@ -311,22 +320,4 @@ impl Span<'_> {
         let step = place.last_steps(&at, pixels.len());
         fill.run(pixels, at, step);
     }
-}
-
-/// 1/`steps` with 31 fraction bits, rounded down, so that no pixel lies beyond the last.
-#[inline]
-fn inverse(steps: usize) -> i32 {
-    static TABLE: [i32; 32] = {
-        let mut table = [i32::MAX; 32];
-        let mut i = 1;
-        while i < 32 {
-            table[i] = i32::MAX / i as i32;
-            i += 1;
-        }
-        table
-    };
-    TABLE.get(steps).copied().unwrap_or_else(|| {
-        let reciprocal = Reciprocal::coarse(steps as u32);
-        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
-    })
 }
