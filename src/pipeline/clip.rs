@@ -15,7 +15,7 @@
 use super::color::Coloring;
 use super::transform::{ClipVertex, ToClip, focal_log2};
 use crate::math::recip::Reciprocal;
-use crate::num::{I12F4, I16F16, U1F31, U8F8, shift_round, wide};
+use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_shift_round, wide};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 use heapless::Vec;
@@ -212,7 +212,7 @@ impl Clip {
     fn screen(&self, vertex: &ClipVertex, axis: usize, w: Reciprocal) -> i64 {
         let x = if axis == 0 { vertex.x } else { vertex.y };
         let shift = 62 - w.zeros as i32 - self.scale;
-        shift_round(wide(x, w.mantissa), shift as u32) + i64::from(self.center[axis])
+        mul_shift_round(x, w.mantissa, shift as u32) + i64::from(self.center[axis])
     }
 
     /// Puts the vertex on the screen; false, and nothing done, if it is not between the planes or its
@@ -228,10 +228,10 @@ impl Clip {
             return false;
         }
         let q = if self.orthographic != 0 {
-            shift_round(wide(self.far - vertex.w, self.depth_mantissa), self.depth_shift as u32)
+            mul_shift_round(self.far - vertex.w, self.depth_mantissa, self.depth_shift as u32)
         } else {
             let shift = (self.depth_shift - w.zeros as i32).clamp(0, 63);
-            shift_round(wide(self.depth_mantissa, w.mantissa), shift as u32)
+            mul_shift_round(self.depth_mantissa, w.mantissa, shift as u32)
         };
         *to = ScreenVertex {
             x: I12F4::from_bits(x as i16),

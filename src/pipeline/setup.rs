@@ -257,7 +257,7 @@ impl TriangleSetup {
         let extent = slopes.extent.saturating_mul(straight.1);
         self.straight = extent == 0
             || wide((q[0] - self.q_min) as i32 >> 4, extent as i32)
-                <= i64::from(self.q_min) * i64::from(straight.0);
+                <= wide(self.q_min as i32, straight.0 as i32);
         if !self.straight {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
