@@ -254,7 +254,7 @@ impl TriangleSetup {
         let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
         self.q_min = q[1].min(q[2]);
         // (width + height)·(q_max − q_min) ≤ straight · q_min, in 1/16 px.
-        let extent = slopes.extent.saturating_mul(straight.1);
+        let extent = slopes.extent * straight.1;
         self.straight = extent == 0
             || wide((q[0] - self.q_min) as i32 >> 4, extent as i32)
                 <= wide(self.q_min as i32, straight.0 as i32);
