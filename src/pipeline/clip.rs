@@ -83,6 +83,7 @@ pub(super) struct Clip {
 const SIDES: [(usize, i64); 4] = [(0, *CUT.start()), (0, *CUT.end()), (1, *CUT.start()), (1, *CUT.end())];
 
 impl Clip {
+    #[inline(never)]
     pub(super) fn new(projection: &Projection, unit_bits: i32) -> Self {
         // To clip units: up for the near plane, so that nothing that is drawn has a q above 1.
         let in_units = |distance: I16F16, round_up: bool| {

@@ -12,7 +12,8 @@ use crate::scene::{Mesh, Projection, Vertex};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use core::fmt;
 
-/// How many screen vertices are kept, by the low bits of their index: neighbours in a mesh share most of theirs.
+/// How many screen vertices are kept, by the low bits of their index: neighbours in a mesh share most of theirs. (Clipping
+/// borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
 const NOBODY: u32 = u32::MAX;
 
@@ -39,60 +40,94 @@ pub(crate) fn draw<F, D, S>(
         return;
     }
     let coloring = shader.coloring(pose);
-    // The vertex cache, and whose each vertex is. Clipping borrows its memory for the corners of a polygon.
+    let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache = [ScreenVertex::default(); MOST_CORNERS];
     let mut owners = [NOBODY; CACHED];
     let straight = if projection.orthographic { NO_PERSPECTIVE } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
         let mut triangle = [ScreenVertex::default(); 3];
-        let mut inside = true;
-        for corner in 0..3 {
-            let index = indices[corner];
-            let slot = usize::from(index) % CACHED;
-            if owners[slot] != u32::from(index) {
-                stats.count(|stats| &mut stats.transformed);
-                owners[slot] = u32::from(index);
-                if !clip.place(&to_clip, &coloring, mesh.vertex(index), &mut cache[slot]) {
-                    owners[slot] = NOBODY;
-                    inside = false;
-                    break;
-                }
-            }
-            triangle[corner] = cache[slot];
-        }
-        let pieces = if inside {
-            1
-        } else {
-            stats.count(|stats| &mut stats.clipped);
-            owners = [NOBODY; CACHED];
-            let corners = indices.map(|index| mesh.vertex(index));
-            let Some(corners) = clip.cut(&to_clip, &coloring, corners, &mut cache) else {
-                stats.count(|stats| &mut stats.rejected);
-                continue;
-            };
-            corners.saturating_sub(2)
-        };
-        for piece in 0..pieces.min(MOST_CORNERS - 2) {
+        let inside = placer.place(indices, &mut cache, &mut owners, &mut triangle, stats);
+        let pieces = if inside { 1 } else { placer.cut(indices, &mut cache, &mut owners, stats) };
+        for piece in 0..pieces {
             if !inside {
                 triangle = [cache[0], cache[piece + 1], cache[piece + 2]];
             }
-            if coloring.is_faceted() && Oriented::new(&triangle, shader.cull()).is_some() {
-                let corners = indices.map(|index| mesh.vertex(index));
-                for vertex in &mut triangle {
-                    vertex.color = coloring.on_triangle(vertex.color, corners);
-                }
+            if coloring.is_faceted() {
+                placer.color_face(indices, shader.cull(), &mut triangle);
             }
-            if let Some(triangle) = Oriented::new(&triangle, shader.cull()) {
-                if window.touches(&triangle) {
-                    stats.count(|stats| &mut stats.drawn);
-                    draw_oriented(&triangle, straight, shader, band, &window);
-                } else {
-                    stats.count(|stats| &mut stats.out_of_sight);
+            draw_checked(&triangle, shader.cull(), straight, shader, band, &window, stats);
+        }
+    }
+}
+
+/// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
+/// functions are not inlined.
+struct Placer<'a> {
+    mesh: &'a Mesh<'a>,
+    to_clip: &'a ToClip,
+    clip: &'a Clip,
+    coloring: &'a Coloring,
+}
+
+impl Placer<'_> {
+    /// A triangle's vertices on the screen, from the cache if they are there; false if it has to be cut.
+    #[inline(never)]
+    fn place(
+        &self,
+        indices: [u16; 3],
+        cache: &mut [ScreenVertex; MOST_CORNERS],
+        owners: &mut [u32; CACHED],
+        triangle: &mut [ScreenVertex; 3],
+        stats: &mut impl Count,
+    ) -> bool {
+        for (index, to) in indices.iter().zip(triangle) {
+            let slot = usize::from(*index) % CACHED;
+            if owners[slot] != u32::from(*index) {
+                stats.count(|stats| &mut stats.transformed);
+                owners[slot] = NOBODY;
+                let vertex = self.mesh.vertex(*index);
+                if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache[slot]) {
+                    return false;
                 }
-            } else {
-                stats.count(|stats| &mut stats.culled);
+                owners[slot] = u32::from(*index);
             }
+            *to = cache[slot];
+        }
+        true
+    }
+
+    /// Cuts a triangle, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    #[cold]
+    #[inline(never)]
+    fn cut(
+        &self,
+        indices: [u16; 3],
+        cache: &mut [ScreenVertex; MOST_CORNERS],
+        owners: &mut [u32; CACHED],
+        stats: &mut impl Count,
+    ) -> usize {
+        stats.count(|stats| &mut stats.clipped);
+        *owners = [NOBODY; CACHED];
+        let corners = indices.map(|index| self.mesh.vertex(index));
+        match self.clip.cut(self.to_clip, self.coloring, corners, cache) {
+            Some(corners) => corners.saturating_sub(2).min(MOST_CORNERS - 2),
+            None => {
+                stats.count(|stats| &mut stats.rejected);
+                0
+            }
+        }
+    }
+
+    /// Gives a triangle that is not culled the light of its face.
+    #[inline(never)]
+    fn color_face(&self, indices: [u16; 3], cull: Cull, triangle: &mut [ScreenVertex; 3]) {
+        if Oriented::new(triangle, cull).is_none() {
+            return;
+        }
+        let corners = indices.map(|index| self.mesh.vertex(index));
+        for vertex in triangle {
+            vertex.color = self.coloring.on_triangle(vertex.color, corners);
         }
     }
 }
@@ -129,27 +164,34 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    if let Some(triangle) = Oriented::new(vertices, cull) {
-        draw_oriented(&triangle, S::Quality::STRAIGHT, shader, band, &window);
-    }
+    draw_checked(vertices, cull, S::Quality::STRAIGHT, shader, band, &window, &mut ());
     Ok(())
 }
 
 #[inline(never)]
-fn draw_oriented<F, D, S>(
-    triangle: &Oriented<'_>,
+fn draw_checked<F, D, S>(
+    vertices: &[ScreenVertex; 3],
+    cull: Cull,
     straight: (u32, u32),
     shader: &S,
     band: &mut Band<'_, F, D>,
     window: &Window,
+    stats: &mut impl Count,
 ) where
     F: PixelFormat,
     D: DepthFormat,
     S: Shader<F>,
 {
-    let mut setup = TriangleSetup::new(triangle);
+    let Some(triangle) = Oriented::new(vertices, cull) else {
+        return stats.count(|stats| &mut stats.culled);
+    };
+    if !window.touches(&triangle) {
+        return stats.count(|stats| &mut stats.out_of_sight);
+    }
+    stats.count(|stats| &mut stats.drawn);
+    let mut setup = TriangleSetup::new(&triangle);
     let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set_planes(triangle, &Needs { inputs, straight, texture_scale, depth: !D::ALWAYS_PASSES });
+    setup.set_planes(&triangle, &Needs { inputs, straight, texture_scale, depth: !D::ALWAYS_PASSES });
     band.draw(&setup, window, shader);
 }
 
