@@ -2,7 +2,11 @@
 //!
 //! `cargo run --release --example probe -- CASE OUT [exact|default|affine]`
 //!
-//! CASE, all little-endian: the bytes `TRI1`; u32 width and height (1 … 1023); u32 depth rule (0 none: the last
+//! CASE is one of two, all little-endian: triangles on the screen (`TRI1`), or a mesh before a camera (`MSH1`).
+//!
+//! # TRI1
+//!
+//! The bytes `TRI1`; u32 width and height (1 … 1023); u32 depth rule (0 none: the last
 //! triangle stays, 1 strictly nearer wins); u32 cull (0 none, 1 clockwise, 2 counter-clockwise, as seen on the screen
 //! with y down); u32 triangle count (at most 65535). Then three vertices a triangle, 32 bytes each:
 //!
@@ -13,27 +17,53 @@
 //! | f32 | u, v in texels | multiples of 1/16 within ±2000 |
 //! | f32 | r, g, b | carried for other readers, ignored here |
 //!
+//! # MSH1
+//!
+//! The bytes `MSH1`; u32 width and height (1 … 1023), u32 cull (as above), u32 vertex count (at most 65536), u32 triangle
+//! count (at most 65535); f32 focal length in pixels (1/16 … 8191), f32 distance of the near plane (above 0); twelve f32,
+//! the rows of a 3 × 4 matrix from mesh to eye space, right-handed with +x right, +y up and −z forward: a rotation times
+//! one scale, and a translation. Then f32 x, y, z, u, v for each vertex and three u32 for each triangle. u and v
+//! are texels within ±2047. The line of sight meets the screen in its middle; there is no far plane; what is strictly nearer
+//! is seen, as the file has no depth rule.
+//!
+//! The triangles go through `Camera::draw`, one at a time as parts of one mesh, with all that implies: the transform,
+//! the clipping at the near plane and at the guard band, culling, snapping to 1/16 pixel. The file's numbers first
+//! become the crate's, and how is printed:
+//!
+//! - positions are rounded to multiples of 2ⁿ/4096 of a mesh unit, with the least 2ⁿ that lets the mesh fit ±8 · 2ⁿ.
+//!   Vertices that are such multiples already are drawn where they are;
+//! - the matrix may miss a rotation times a scale by 0.0001 of that scale in any element of its product with its
+//!   transpose, and is rounded to 2⁻¹⁴ for each element of the rotation;
+//! - lengths of eye space (the scale, the translation, near) are multiplied by the largest power of two that leaves them
+//!   within the crate's range, which the picture does not show, then rounded: the scale to 2⁻²², the others to 2⁻¹⁶;
+//! - the focal length is rounded to 2⁻¹⁶, u and v to 1/16.
+//!
+//! # Output
+//!
 //! OUT: 16 bytes a pixel, rows from the top, little-endian: u16 how many triangles cover it, whatever their depth;
 //! u16 the index of the visible one; f32 u, v, 1/w of that one. A pixel that none covers is 0, 65535, 0, 0, 0.
 //!
-//! The triangles go through `draw_triangle` and the span loops that materials use, with q = near/w rounded to 31
+//! The triangles of `TRI1` go through `draw_triangle` and the span loops that materials use, with q = near/w rounded to 31
 //! bits, where near is the smallest w of the file. (Of a q of 2⁻¹⁶, the farthest allowed, that leaves 15 bits: the
 //! rounding alone moves the texture of such a triangle by up to 0.03 pixel if it fills the guard band.)
 //!
 //! Only the fetch is replaced: it returns the coordinate on a texture of 256 × 256 texels, 8 bits of texel and 8 of
 //! fraction each for u and v. So whole turns of 256 are lost, and put back as those that bring it nearest to the
-//! perspective-correct value, computed from the file in `f64`. For `affine` too: an error of more than 128 texels
+//! perspective-correct value, computed from the file (of a mesh: from the numbers it was rounded to) in `f64`. For `affine` too: an error of more than 128 texels
 //! shows only modulo 256.
 //!
 //! The fraction is rounded to nearest. A fetch truncates, but to whole texels; truncated to 1/256, every coordinate
 //! would read 1/512 texel too low on average. Rounded, it is off by at most 1/512 (0.002) texel and by 0 on average,
 //! and still within the range of the vertices, whose coordinates are multiples of 1/256.
 //!
-//! 1/w is q/near from the depth test's own q, as an f32 (infinite where near is below 2⁻¹²⁸).
+//! 1/w is q/near from the depth test's own q, as an f32 (infinite where near is below 2⁻¹²⁸), in units of the file.
 //!
 //! Exit codes: 0, written; 1, OUT could not be written; 2, wrong arguments or a CASE that cannot be read, is malformed
 //! or out of range.
 #![expect(clippy::float_arithmetic, reason = "the file has floats, and the whole turns are found in f64")]
+
+#[path = "support/probe_mesh.rs"]
+mod mesh;
 
 use std::env;
 use std::ffi::OsString;
@@ -80,31 +110,43 @@ fn run(args: &[OsString]) -> Result<String, Failure> {
         [case, out, quality] => (Path::new(case), Path::new(out), quality.to_str().unwrap_or_default()),
         _ => return Err(Failure::Case(USAGE.into())),
     };
-    let draw = match quality {
-        "exact" => draw::<Exact>,
-        "default" => draw::<QuarterPixel>,
-        "affine" => draw::<Affine>,
-        _ => return Err(Failure::Case(format!("no such quality; {USAGE}"))),
-    };
+    if !["exact", "default", "affine"].contains(&quality) {
+        return Err(Failure::Case(format!("no such quality; {USAGE}")));
+    }
     let in_case = |error: String| Failure::Case(format!("{}: {error}", case.display()));
-    let case = read(case).and_then(|bytes| Case::parse(&bytes)).map_err(in_case)?;
-    let pixels = draw(&case).map_err(in_case)?;
-    fs::write(out, case.report(&pixels))
-        .map_err(|error| Failure::Output(format!("{}: {error}", out.display())))?;
-    let covered = pixels.iter().filter(|(_, met)| met.count > 0).count();
+    let bytes = read(case).map_err(in_case)?;
+    let picture = if bytes.starts_with(mesh::MAGIC) {
+        mesh::Case::parse(&bytes).and_then(|case| case.picture(quality))
+    } else {
+        Case::parse(&bytes).and_then(|case| case.picture(quality))
+    };
+    let Picture { size, report, drawn } = picture.map_err(in_case)?;
+    fs::write(out, &report).map_err(|error| Failure::Output(format!("{}: {error}", out.display())))?;
+    let covered = report.chunks_exact(PIXEL).filter(|pixel| pixel[..2] != [0; 2]).count();
     Ok(format!(
-        "{}: {} x {} pixels, {covered} of them covered by {} triangles",
+        "{}: {} x {} pixels, {covered} of them covered by {drawn}",
         out.display(),
-        case.width,
-        case.height,
-        case.triangles.len()
+        size.width,
+        size.height
     ))
+}
+
+/// A case, drawn.
+struct Picture {
+    size: Size,
+    /// The bytes of the output.
+    report: Vec<u8>,
+    /// What was drawn, in words.
+    drawn: String,
 }
 
 // --- The case ---
 
 const HEADER: usize = 24;
 const TRIANGLE: usize = 3 * 32;
+
+/// Bytes of a pixel of the output.
+const PIXEL: usize = 16;
 
 /// The index of the triangle at a pixel that none covers.
 const NONE: u16 = u16::MAX;
@@ -114,8 +156,7 @@ const MOST_TRIANGLES: u32 = NONE as u32;
 const GUARD_BAND: std::ops::RangeInclusive<i32> = -1024 * 16..=1023 * 16;
 
 struct Case {
-    width: u32,
-    height: u32,
+    size: Size,
     nearer_wins: bool,
     cull: Cull,
     /// The smallest w.
@@ -134,7 +175,7 @@ struct Vertex {
 
 /// The bytes of a file; of one too long to be a case, as many as show it.
 fn read(path: &Path) -> Result<Vec<u8>, String> {
-    let longest = HEADER + MOST_TRIANGLES as usize * TRIANGLE;
+    let longest = (HEADER + MOST_TRIANGLES as usize * TRIANGLE).max(mesh::LONGEST);
     let mut bytes = Vec::new();
     File::open(path)
         .and_then(|file| file.take(longest as u64 + 1).read_to_end(&mut bytes))
@@ -145,28 +186,19 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 impl Case {
     fn parse(bytes: &[u8]) -> Result<Self, String> {
         if !bytes.starts_with(b"TRI1") {
-            return Err("it does not begin with TRI1: not a case".into());
+            return Err("it begins with neither TRI1 nor MSH1: not a case".into());
         }
         let Some((header, data)) = bytes.split_first_chunk::<HEADER>() else {
             return Err(format!("it ends within its header: {} of {HEADER} bytes", bytes.len()));
         };
         let [_, width, height, rule, cull, count] = words(header).map(u32::from_le_bytes);
-        for (name, side) in [("width", width), ("height", height)] {
-            if !(1..=1023).contains(&side) {
-                return Err(format!("its {name} is {side}, not 1 to 1023"));
-            }
-        }
+        let size = size(width, height)?;
         let nearer_wins = match rule {
             0 => false,
             1 => true,
             _ => return Err(format!("its depth rule is {rule}, not 0 or 1")),
         };
-        let cull = match cull {
-            0 => Cull::None,
-            1 => Cull::Back,
-            2 => Cull::Front,
-            _ => return Err(format!("its cull is {cull}, not 0, 1 or 2")),
-        };
+        let cull = self::cull(cull)?;
         if count > MOST_TRIANGLES {
             return Err(format!("it has {count} triangles, but at most {MOST_TRIANGLES} can be told apart"));
         }
@@ -191,7 +223,25 @@ impl Case {
             Ok([vertex(0)?, vertex(1)?, vertex(2)?])
         });
         let triangles = triangles.collect::<Result<Vec<_>, String>>()?;
-        Ok(Self { width, height, nearer_wins, cull, near: smallest_w(&triangles)?, triangles })
+        Ok(Self { size, nearer_wins, cull, near: smallest_w(&triangles)?, triangles })
+    }
+}
+
+fn size(width: u32, height: u32) -> Result<Size, String> {
+    for (name, side) in [("width", width), ("height", height)] {
+        if !(1..=1023).contains(&side) {
+            return Err(format!("its {name} is {side}, not 1 to 1023"));
+        }
+    }
+    Ok(Size::new(width, height))
+}
+
+fn cull(cull: u32) -> Result<Cull, String> {
+    match cull {
+        0 => Ok(Cull::None),
+        1 => Ok(Cull::Back),
+        2 => Ok(Cull::Front),
+        _ => Err(format!("its cull is {cull}, not 0, 1 or 2")),
     }
 }
 
@@ -319,6 +369,7 @@ impl<const NEARER_WINS: bool> DepthFormat for Counting<NEARER_WINS> {
 /// A texture whose texels are their coordinates. Spans are drawn by the trait's own method: the loops of materials.
 struct Coordinates<Q> {
     triangle: u16,
+    cull: Cull,
     quality: PhantomData<Q>,
 }
 
@@ -327,6 +378,10 @@ impl<Q: Quality> Shader<Recording> for Coordinates<Q> {
 
     fn inputs(&self) -> Inputs {
         Inputs::Uv
+    }
+
+    fn cull(&self) -> Cull {
+        self.cull
     }
 
     fn color(&self, varying: &Varying) -> Drawn {
@@ -338,27 +393,50 @@ impl<Q: Quality> Shader<Recording> for Coordinates<Q> {
 
 type Pixels = Vec<(Drawn, Met)>;
 
-fn draw<Q: Quality>(case: &Case) -> Result<Pixels, String> {
-    if case.nearer_wins {
-        draw_into::<Q, Counting<true>>(case)
-    } else {
-        draw_into::<Q, Counting<false>>(case)
-    }
-}
-
-fn draw_into<Q: Quality, D: DepthFormat<Word = Met>>(case: &Case) -> Result<Pixels, String> {
-    let size = Size::new(case.width, case.height);
-    let count = (size.width * size.height) as usize;
-    let (mut pixels, mut depth) = (vec![Recording::BLANK; count], vec![D::CLEAR; count]);
+/// Draws numbered triangles one after another: `draw` takes the shader that writes down the number.
+fn draw_all<Q: Quality, D: DepthFormat<Word = Met>>(
+    size: Size,
+    cull: Cull,
+    count: usize,
+    draw: impl Fn(usize, &Coordinates<Q>, &mut Band<'_, Recording, D>) -> Result<(), String>,
+) -> Result<Pixels, String> {
+    let pixels = (size.width * size.height) as usize;
+    let (mut pixels, mut depth) = (vec![Recording::BLANK; pixels], vec![D::CLEAR; pixels]);
     let mut band =
         Band::<Recording, D>::new(size, &mut pixels, &mut depth).map_err(|error| error.to_string())?;
-    for (index, triangle) in case.triangles.iter().enumerate() {
-        let vertices = triangle.map(|vertex| screen_vertex(vertex, case.near));
-        let shader = Coordinates::<Q> { triangle: index as u16, quality: PhantomData };
-        draw_triangle(&vertices, case.cull, &shader, &mut band)
-            .map_err(|error| format!("triangle {index}: {error}"))?;
+    for index in 0..count {
+        let shader = Coordinates { triangle: index as u16, cull, quality: PhantomData };
+        draw(index, &shader, &mut band).map_err(|error| format!("triangle {index}: {error}"))?;
     }
     Ok(pixels.into_iter().zip(depth).collect())
+}
+
+impl Case {
+    fn picture(&self, quality: &str) -> Result<Picture, String> {
+        let pixels = match quality {
+            "exact" => self.draw::<Exact>(),
+            "affine" => self.draw::<Affine>(),
+            _ => self.draw::<QuarterPixel>(),
+        }?;
+        let exact = |index: u16, x, y| perspective(&self.triangles[usize::from(index)], x, y);
+        let report = report(self.size, &pixels, f64::from(self.near), exact);
+        Ok(Picture { size: self.size, report, drawn: format!("{} triangles", self.triangles.len()) })
+    }
+
+    fn draw<Q: Quality>(&self) -> Result<Pixels, String> {
+        if self.nearer_wins {
+            self.draw_into::<Q, Counting<true>>()
+        } else {
+            self.draw_into::<Q, Counting<false>>()
+        }
+    }
+
+    fn draw_into<Q: Quality, D: DepthFormat<Word = Met>>(&self) -> Result<Pixels, String> {
+        draw_all::<Q, D>(self.size, self.cull, self.triangles.len(), |index, shader, band| {
+            let vertices = self.triangles[index].map(|vertex| screen_vertex(vertex, self.near));
+            draw_triangle(&vertices, self.cull, shader, band).map_err(|error| error.to_string())
+        })
+    }
 }
 
 /// The vertex in the crate's numbers: all of these fit them, as `Vertex::parse` saw to.
@@ -376,24 +454,22 @@ fn screen_vertex(vertex: Vertex, near: f32) -> ScreenVertex {
 
 // --- The report ---
 
-impl Case {
-    fn report(&self, pixels: &[(Drawn, Met)]) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(16 * pixels.len());
-        for (i, (drawn, met)) in (0..).zip(pixels) {
-            let [u, v, inverse_w] = match self.triangles.get(usize::from(drawn.triangle)) {
-                Some(triangle) => {
-                    let [u, v] = perspective(triangle, i % self.width, i / self.width);
-                    let inverse_w = f64::from(met.q) / 2f64.powi(31) / f64::from(self.near);
-                    [nearest_turn(drawn.uv[0], u), nearest_turn(drawn.uv[1], v), inverse_w]
-                }
-                None => [0.0; 3],
-            };
-            bytes.extend(met.count.to_le_bytes());
-            bytes.extend(drawn.triangle.to_le_bytes());
-            bytes.extend([u, v, inverse_w].map(|value| (value as f32).to_le_bytes()).as_flattened());
-        }
-        bytes
+/// The bytes of the output. `exact` says what u and v of a triangle should be at a pixel.
+fn report(size: Size, pixels: &Pixels, near: f64, exact: impl Fn(u16, u32, u32) -> [f64; 2]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(PIXEL * pixels.len());
+    for (i, (drawn, met)) in (0..).zip(pixels) {
+        let [u, v, inverse_w] = if drawn.triangle == NONE {
+            [0.0; 3]
+        } else {
+            let [u, v] = exact(drawn.triangle, i % size.width, i / size.width);
+            let inverse_w = f64::from(met.q) / 2f64.powi(31) / near;
+            [nearest_turn(drawn.uv[0], u), nearest_turn(drawn.uv[1], v), inverse_w]
+        };
+        bytes.extend(met.count.to_le_bytes());
+        bytes.extend(drawn.triangle.to_le_bytes());
+        bytes.extend([u, v, inverse_w].map(|value| (value as f32).to_le_bytes()).as_flattened());
     }
+    bytes
 }
 
 /// u and v at a pixel centre: Σ λ·u/w over Σ λ/w, with λ the exact edge functions.

@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use common::{cases, for_all};
 use proptest::prelude::*;
+use reference::view::{Facet, Lens, Placement, View};
 use reference::{Corner, DEPTH_STEP, Facing, Triangle, UNIT};
 
 // --- Cases ---
@@ -122,8 +123,9 @@ fn executable() -> &'static Path {
         let profile = this.ancestors().nth(2).expect("a test lies in target/profile/deps");
         let executable = profile.join("examples").join(format!("probe{EXE_SUFFIX}"));
         let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).ok();
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/probe.rs");
-        if changed(&executable) < changed(&this).max(changed(&source)) {
+        let source = |name: &str| changed(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name));
+        let newest = source("probe.rs").max(source("support/probe_mesh.rs")).max(changed(&this));
+        if changed(&executable) < newest {
             let name = profile.file_name().and_then(|name| name.to_str()).expect("a profile's name");
             let status = Command::new(env!("CARGO"))
                 .args(["build", "--quiet", "--example", "probe", "--manifest-path"])
@@ -182,9 +184,12 @@ const BARE: Pixel = Pixel { count: 0, index: u16::MAX, uv: [0.0; 2], inverse_w: 
 fn report(case: &Case, quality: &str) -> Vec<Pixel> {
     let (output, report) = probe(&case.bytes(), quality);
     assert_eq!(code(&output), Some(0), "{}", message(&output));
-    let report = report.expect("a report");
+    pixels(&report.expect("a report"), (case.width * case.height) as usize)
+}
+
+fn pixels(report: &[u8], count: usize) -> Vec<Pixel> {
     let (pixels, rest) = report.as_chunks::<16>();
-    assert_eq!((pixels.len(), rest), ((case.width * case.height) as usize, &[][..]));
+    assert_eq!((pixels.len(), rest), (count, &[][..]));
     let pixel = |bytes: &[u8; 16]| {
         let (shorts, _) = bytes.as_chunks();
         let (words, _) = bytes.as_chunks();
@@ -487,6 +492,368 @@ fn as_many_triangles_as_an_index_can_tell_apart() {
     for pixel in report(&case, "default") {
         assert_eq!((pixel.count, pixel.index), (65535, 65534));
     }
+}
+
+// --- Meshes ---
+
+/// An `MSH1` case.
+#[derive(Clone, Debug)]
+struct MeshCase {
+    size: [u32; 2],
+    cull: u32,
+    focal: f32,
+    near: f32,
+    matrix: [[f32; 4]; 3],
+    vertices: Vec<[f32; 5]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl MeshCase {
+    fn bytes(&self) -> Vec<u8> {
+        let [width, height] = self.size;
+        let counts = [self.vertices.len() as u32, self.triangles.len() as u32];
+        let mut bytes = b"MSH1".to_vec();
+        bytes.extend([width, height, self.cull, counts[0], counts[1]].map(u32::to_le_bytes).as_flattened());
+        bytes.extend([self.focal, self.near].map(f32::to_le_bytes).as_flattened());
+        bytes.extend(self.matrix.iter().flatten().flat_map(|element| element.to_le_bytes()));
+        bytes.extend(self.vertices.iter().flatten().flat_map(|value| value.to_le_bytes()));
+        bytes.extend(self.triangles.iter().flatten().flat_map(|index| index.to_le_bytes()));
+        bytes
+    }
+}
+
+impl Dice {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + self.fraction() * (high - low)
+    }
+
+    /// Triangles that share their vertices, some before the eye and some behind it. Every number but the rotation is
+    /// one that the crate's formats hold; the rotation is given as it is rounded.
+    fn mesh(&mut self, (width, height): (u32, u32), count: u32) -> MeshCase {
+        let unit = self.within(-6, 6);
+        let scale = 2f64.powi(self.within(-5, 5));
+        let steps = 2f64.powi(unit - 12);
+        let vertices = (0..count / 2 + 3).map(|i| {
+            // The first has a coordinate that fixes the unit.
+            let mut at = || f64::from(self.within(-32767, 32767)) * steps;
+            let place = [if i == 0 { 32000.0 * steps } else { at() }, at(), at()];
+            let [u, v] = [self.within(-2047 * 16, 2047 * 16), self.within(-500, 500)];
+            [place[0] as f32, place[1] as f32, place[2] as f32, u as f32 / 16.0, v as f32 / 16.0]
+        });
+        let vertices: Vec<_> = vertices.collect();
+        let triangles =
+            (0..count).map(|_| [0; 3].map(|_: i32| self.within(0, vertices.len() as i32 - 1) as u32));
+        let triangles = triangles.collect();
+        let [yaw, pitch] = [0, 1].map(|_| self.between(0.0, std::f64::consts::TAU));
+        let ((s, c), (t, d)) = (yaw.sin_cos(), pitch.sin_cos());
+        let rotation = [[c, 0.0, s], [t * s, d, -t * c], [-d * s, t, d * c]];
+        let size = 8.0 * 2f64.powi(unit) * scale;
+        let matrix = rotation.map(|row| {
+            let [a, b, c] = row.map(|element| ((element * 16384.0).round() / 16384.0 * scale) as f32);
+            // A few bits, so that any format holds them.
+            [a, b, c, (self.between(-64.0, 64.0).round() / 64.0 * size) as f32]
+        });
+        let near = (size * 2f64.powi(self.within(-9, -2))) as f32;
+        let focal = self.within(10 * 16, 120 * 16) as f32 / 16.0;
+        MeshCase {
+            size: [width, height],
+            cull: self.within(0, 2) as u32,
+            focal,
+            near,
+            matrix,
+            vertices,
+            triangles,
+        }
+    }
+}
+
+fn report_of_mesh(case: &MeshCase, quality: &str) -> Vec<Pixel> {
+    let (output, report) = probe(&case.bytes(), quality);
+    assert_eq!(code(&output), Some(0), "{}", message(&output));
+    let [width, height] = case.size;
+    pixels(&report.expect("a report"), (width * height) as usize)
+}
+
+/// The reference's view of it. The scale is a power of two, the rotation of 14 fraction bits.
+fn view_of(case: &MeshCase) -> View {
+    let squares: f64 = case.matrix.iter().flat_map(|row| &row[..3]).map(|at| f64::from(*at).powi(2)).sum();
+    let scale = 2f64.powi(((squares / 3.0).log2() / 2.0).round() as i32);
+    let pose = Placement {
+        rotation: case.matrix.map(|[a, b, c, _]| [a, b, c].map(|at| f64::from(at) / scale)),
+        scale,
+        translation: case.matrix.map(|row| f64::from(row[3])),
+    };
+    let rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let eye = Placement { rotation, scale: 1.0, translation: [0.0; 3] };
+    let center = case.size.map(|side| f64::from(side) / 2.0);
+    let (focal, near) = (f64::from(case.focal), f64::from(case.near));
+    View::new(Lens { focal, center, near, far: f64::INFINITY, orthographic: false }, eye, pose)
+}
+
+/// The smallest and the largest.
+fn ends(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
+}
+
+/// How far snapping may move the corners, and the outline, in pixels: see `tests/views.rs`.
+const SNAPPING: f64 = 1.0 / 16.0;
+const MARGIN: f64 = 1.0 / 8.0;
+
+/// Every pixel of a mesh against the reference; the largest errors of u and v, how many were measured, and
+/// how many pixels are covered.
+fn compare_mesh(case: &MeshCase, facets: &[Facet], quality: &str) -> (f64, u32, u32) {
+    let (mut worst, mut clear, mut covered) = (0.0_f64, 0, 0);
+    let near = f64::from(case.near);
+    let faces = |facet: &Facet| match case.cull {
+        0 => true,
+        1 => facet.turn < 0.0,
+        _ => facet.turn > 0.0,
+    };
+    for (place, pixel) in report_of_mesh(case, quality).into_iter().enumerate() {
+        let [x, y] = [place as u32 % case.size[0], place as u32 / case.size[0]].map(|at| f64::from(at) + 0.5);
+        let about = || format!("at {x}, {y}, {quality}: {pixel:?}");
+        let candidates = facets.iter().filter(|facet| faces(facet)).map(|facet| (facet.depth([x, y]), facet));
+        let candidates: Vec<_> = candidates.filter(|(depth, _)| *depth >= -MARGIN).collect();
+        let certain = || candidates.iter().filter(|(depth, _)| *depth >= MARGIN);
+        let counts = certain().count()..=candidates.len();
+        assert!(counts.contains(&usize::from(pixel.count)), "{counts:?} {}", about());
+        if pixel.count == 0 {
+            assert_eq!(pixel, BARE);
+            continue;
+        }
+        covered += 1;
+        let facet = &facets[usize::from(pixel.index)];
+        assert!(candidates.iter().any(|(_, other)| std::ptr::eq(*other, facet)), "{}", about());
+
+        // Whatever is within the snapping.
+        let r = SNAPPING;
+        let square = [(0.0, 0.0), (-r, -r), (r, -r), (-r, r), (r, r)];
+        let around = |facet: &Facet| square.map(|(dx, dy)| facet.at([x + dx, y + dy]));
+        let [Some(here), Some(a), Some(b), Some(c), Some(d)] = around(facet) else { continue };
+        let hits = [here, a, b, c, d];
+        let (low, high) = ends(hits.iter().map(|hit| near / hit.w));
+        let step = DEPTH_STEP as f64 / 2f64.powi(31);
+        let q = f64::from(pixel.inverse_w) * near;
+        assert!((low.min(1.0) - step..=high + step).contains(&q), "{low} to {high} {}", about());
+        for (_, other) in certain() {
+            let (least, _) = ends(around(other).iter().flatten().map(|hit| near / hit.w));
+            assert!(least.min(1.0) <= high + 2.0 * step, "{least} is nearer than {high} {}", about());
+        }
+
+        let vertices = case.triangles[usize::from(pixel.index)].map(|i| case.vertices[i as usize]);
+        for axis in [0, 1] {
+            let texels = vertices.map(|vertex| f64::from(vertex[3 + axis]));
+            let value = f64::from(pixel.uv[axis]);
+            let neighbours = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+            let steps = neighbours.iter().filter_map(|(dx, dy)| facet.at([x + dx, y + dy]));
+            let step = steps.map(|hit| (hit.of(texels) - here.of(texels)).abs()).fold(1.0, f64::max);
+            let (low, high) = ends(hits.iter().map(|hit| hit.of(texels)));
+            // Which of two turns is nearer may hang on the snapping.
+            if step < 256.0 && high - low < 64.0 {
+                let error = (low - value).max(value - high).max(0.0) / step;
+                assert!(error <= bound(quality), "{axis} is {error} pixels off {}", about());
+                worst = worst.max(error);
+                clear += 1;
+            }
+        }
+    }
+    (worst, clear, covered)
+}
+
+#[test]
+fn forty_meshes_of_100_triangles_that_cross_the_near_plane_are_as_the_reference_says() {
+    let (mut worst, mut clear, mut covered, mut clipped) = ([0.0_f64; 2], 0, 0, 0);
+    for number in 0..cases(40) {
+        let mut case = Dice(0x1234_5678_9abc_def1 ^ (u64::from(number) << 20)).mesh((64, 48), 100);
+        case.cull = number % 3;
+        let view = view_of(&case);
+        let corner = |i: u32| {
+            let [x, y, z, ..] = case.vertices[i as usize].map(f64::from);
+            [x, y, z]
+        };
+        let facets: Vec<_> = case.triangles.iter().map(|corners| view.facet(corners.map(corner))).collect();
+        let cut = |facet: &&Facet| facet.outline.iter().any(|side| side.edge.is_none());
+        clipped += facets.iter().filter(cut).count();
+        let which = number as usize % 2;
+        let measured = compare_mesh(&case, &facets, ["default", "exact"][which]);
+        worst[which] = measured.0.max(worst[which]);
+        (clear, covered) = (clear + measured.1, covered + measured.2);
+    }
+    println!(
+        "meshes: {} of 100 triangles, {clipped} triangles clipped, {covered} pixels covered; u and v of {} pixels off by \
+         {:.4} (default) and {:.4} (exact) at most beside the snapping",
+        cases(40),
+        clear / 2,
+        worst[0],
+        worst[1]
+    );
+    assert!(covered > 1000 * cases(40) && clipped > 10 * cases(40) as usize && clear > covered);
+}
+
+/// A square 2 units wide, 4 units before the eye, at 32 pixels a unit.
+fn square() -> MeshCase {
+    let vertices = vec![
+        [-1.0, -1.0, 0.0, 0.0, 64.0],
+        [1.0, -1.0, 0.0, 64.0, 64.0],
+        [1.0, 1.0, 0.0, 64.0, 0.0],
+        [-1.0, 1.0, 0.0, 0.0, 0.0],
+    ];
+    MeshCase {
+        size: [80, 72],
+        cull: 1,
+        focal: 128.0,
+        near: 0.5,
+        matrix: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -4.0]],
+        vertices,
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+    }
+}
+
+#[test]
+fn a_mesh_stands_where_its_matrix_says_at_any_scale() {
+    for scale in [1.0, 1e-30, 1e-6, 0.001, 0.3, 1000.0, 1e6, 1e30_f32] {
+        let mut case = square();
+        case.near *= scale;
+        for element in case.matrix.as_flattened_mut() {
+            *element *= scale;
+        }
+        for (place, pixel) in report_of_mesh(&case, "exact").into_iter().enumerate() {
+            let (x, y) = (place as i32 % 80 - 8, place as i32 / 80 - 4);
+            if !((0..64).contains(&x) && (0..64).contains(&y)) {
+                assert_eq!(pixel, BARE, "{scale}: {x}, {y}");
+                continue;
+            }
+            assert_eq!(pixel.count, 1, "{scale}: {x}, {y}");
+            assert_eq!(pixel.uv, [x as f32 + 0.5, y as f32 + 0.5], "{scale}: {x}, {y}");
+            let w = 1.0 / pixel.inverse_w / scale;
+            assert!((w - 4.0).abs() < 1e-4, "{scale}: w is {w}");
+        }
+    }
+    // Seen from behind, and drawn behind something: the first stays where both are as near.
+    let back = MeshCase { cull: 2, ..square() };
+    assert!(report_of_mesh(&back, "default").iter().all(|pixel| *pixel == BARE));
+    let twice = MeshCase { cull: 0, triangles: vec![[0, 1, 2], [0, 2, 3], [0, 1, 2], [0, 2, 3]], ..square() };
+    assert!(
+        report_of_mesh(&twice, "default")
+            .iter()
+            .all(|pixel| [0, 2].contains(&pixel.count) && (pixel.index < 2) == (pixel.count > 0))
+    );
+    // Nothing at all.
+    let nothing = MeshCase { vertices: Vec::new(), triangles: Vec::new(), ..square() };
+    assert!(report_of_mesh(&nothing, "default").iter().all(|pixel| *pixel == BARE));
+    let point = MeshCase { vertices: vec![[0.0; 5]; 3], triangles: vec![[0, 1, 2]], ..square() };
+    assert!(report_of_mesh(&point, "default").iter().all(|pixel| *pixel == BARE));
+}
+
+#[test]
+fn what_became_of_a_meshs_numbers_is_printed() {
+    let printed = |case: &MeshCase| {
+        let (output, report) = probe(&case.bytes(), "default");
+        assert_eq!((code(&output), report.is_some()), (Some(0), true), "{}", message(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let text = printed(&square());
+    // ±1 fits ±2 only, as 1 is just not below 8/8.
+    assert!(
+        text.contains("positions: steps of 6.103515625e-5 mesh units")
+            && text.contains("moved by at most 0e0"),
+        "{text}"
+    );
+    assert!(text.contains("near plane as drawn: 5e-1") && !text.contains("texels"), "{text}");
+    let mut case = square();
+    case.vertices[1] = [500.0, -0.01, 0.0, 0.1, 64.0];
+    let text = printed(&case);
+    assert!(
+        text.contains("steps of 1.5625e-2 mesh units") && text.contains("texels: of 1 vertices"),
+        "{text}"
+    );
+}
+
+#[test]
+fn every_malformed_field_of_a_mesh_is_named() {
+    let good = square().bytes();
+    let with = |at: usize, bytes: [u8; 4]| {
+        let mut case = good.clone();
+        case[at..at + 4].copy_from_slice(&bytes);
+        case
+    };
+    refused(&good[..4], &["header", "4 of 80"]);
+    refused(&good[..79], &["header", "79 of 80"]);
+    refused(&good[..good.len() - 1], &["ends", "4 vertices", "2 triangles", "103 bytes", "104"]);
+    refused(&[&good[..], &[0]].concat(), &["goes on", "105 bytes"]);
+    for (at, name) in [(4, "width"), (8, "height")] {
+        for side in [0, 1024, u32::MAX] {
+            refused(&with(at, side.to_le_bytes()), &[name, &side.to_string(), "1023"]);
+        }
+    }
+    refused(&with(12, 3u32.to_le_bytes()), &["cull is 3"]);
+    refused(&with(16, 65537u32.to_le_bytes()), &["65537 vertices", "65536"]);
+    refused(&with(16, u32::MAX.to_le_bytes()), &["4294967295 vertices"]);
+    refused(&with(20, 65536u32.to_le_bytes()), &["65536 triangles", "65535"]);
+    refused(&with(20, u32::MAX.to_le_bytes()), &["4294967295 triangles"]);
+    for focal in [0.0, -1.0, 0.06, 8192.0, f32::NAN, f32::INFINITY] {
+        refused(&with(24, focal.to_le_bytes()), &["focal length is"]);
+    }
+    for near in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e-10] {
+        refused(&with(28, near.to_le_bytes()), &["near plane is at"]);
+    }
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for element in 0..12 {
+            refused(&with(32 + 4 * element, value.to_le_bytes()), &["matrix", "not finite"]);
+        }
+        for (field, name) in [(0, "x is"), (1, "y is"), (2, "z is"), (3, "u is"), (4, "v is")] {
+            refused(&with(80 + 20 + 4 * field, value.to_le_bytes()), &["vertex 1", name]);
+        }
+    }
+    for value in [2048.0, -2048.0, 1e30_f32] {
+        refused(&with(80 + 12, value.to_le_bytes()), &["vertex 0", "u is", "2047"]);
+    }
+    for index in [4, 65536, u32::MAX] {
+        refused(
+            &with(80 + 4 * 20 + 12 + 8, index.to_le_bytes()),
+            &["triangle 1", &format!("vertex {index}"), "4"],
+        );
+    }
+    let matrix = |change: &dyn Fn(&mut [[f32; 4]; 3])| {
+        let mut case = square();
+        change(&mut case.matrix);
+        case.bytes()
+    };
+    refused(&matrix(&|rows| rows[0][0] = 1.001), &["not a rotation"]);
+    refused(&matrix(&|rows| rows[0][1] = 0.0002), &["not a rotation"]);
+    refused(&matrix(&|rows| rows[0][0] = -1.0), &["mirror"]);
+    refused(&matrix(&|rows| rows[2][2] = 0.0), &["not a rotation"]);
+    refused(&matrix(&|rows| *rows = [[0.0; 4]; 3]), &["scale of 0"]);
+    refused(&matrix(&|rows| rows[2][3] = 1e30), &["near plane is at"]);
+    // Within the tolerance.
+    let (output, _) = probe(&matrix(&|rows| rows[0][1] = 0.00009), "default");
+    assert_eq!(code(&output), Some(0), "{}", message(&output));
+}
+
+#[test]
+fn changed_bytes_of_a_mesh_never_panic_in_400_cases() {
+    let case = square().bytes();
+    let at = prop_oneof![1 => 4..80_usize, 1 => 80..case.len()];
+    let flips = prop::collection::vec((at, prop_oneof![(0..8).prop_map(|bit| 1u8 << bit), 1..=255_u8]), 1..4);
+    let counts = std::cell::Cell::new([0, 0]);
+    for_all("changed bytes of a mesh", 400, flips, |flips| {
+        let mut case = case.clone();
+        for (at, flip) in flips {
+            case[at] ^= flip;
+        }
+        let (output, report) = probe(&case, "default");
+        let [taken, not] = counts.get();
+        if report.is_some() {
+            prop_assert_eq!(code(&output), Some(0), "{}", message(&output));
+            counts.set([taken + 1, not]);
+        } else {
+            prop_assert_eq!(code(&output), Some(2), "{}", message(&output));
+            prop_assert!(message(&output).starts_with("probe: ") && message(&output).lines().count() == 1);
+            counts.set([taken, not + 1]);
+        }
+        Ok(())
+    });
+    println!("changed bytes of a mesh: {:?} taken and refused", counts.get());
 }
 
 // --- Malformed cases ---

@@ -10,6 +10,8 @@
 #![allow(dead_code)]
 #![allow(clippy::float_arithmetic, reason = "exact fractions are at last read as f64")]
 
+pub(crate) mod view;
+
 /// What a vertex carries beside its place: u, v, red, green, blue, each in units of 2⁻¹⁶.
 pub(crate) const ATTRIBUTES: usize = 5;
 

@@ -1,0 +1,196 @@
+//! The promise: whatever the numbers, nothing panics, hangs, overflows or writes outside the target. These are the ends of
+//! every format and the ways to describe nothing at all, each by name and in every combination; `tests/robustness.rs`
+//! has random ones.
+
+mod common;
+mod reference;
+
+use fixel::embedded_graphics::pixelcolor::Rgb565;
+use fixel::embedded_graphics::prelude::*;
+use fixel::fixed::types::{I2F14, I12F4, I16F16, U10F22};
+use fixel::{
+    Band, Camera, Cull, Depth16, Light, Lights, Material, Mesh, Pose, Stats, Texture, Turn, Vec3, Vertex,
+};
+
+const CORNERS: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.5], [-1.0, 1.0, -0.5]];
+
+/// The last bit of a mesh position.
+const STEP: f32 = 0.000_244_140_63;
+
+/// Words past the target, to see that they stay as they are.
+const SPARE: usize = 64;
+
+fn vertices(places: &[[f32; 3]]) -> Vec<Vertex> {
+    let uv = [[0, 0], [i16::MAX, i16::MIN], [i16::MIN, i16::MAX], [-1, 1]];
+    let vertex = |(i, [x, y, z]): (usize, &[f32; 3])| Vertex {
+        uv: uv[i % 4].map(I12F4::from_bits),
+        color: [255, 0, i as u8],
+        normal: [[127, 0, 0], [-128, -128, -128], [0, 0, 0], [1, -1, 127]][i % 4],
+        ..Vertex::new(*x, *y, *z)
+    };
+    places.iter().enumerate().map(vertex).collect()
+}
+
+/// Its name, vertices and triangles.
+type Parts = (&'static str, Vec<Vertex>, Vec<[u16; 3]>);
+
+/// Meshes by what is wrong with them.
+fn meshes() -> Vec<Parts> {
+    let (low, high) = (-8.0, 7.999_756);
+    let ends = [[low, low, low], [high, high, high], [low, high, low], [high, low, high]];
+    vec![
+        ("ordinary", vertices(&CORNERS), vec![[0, 1, 2], [0, 2, 3]]),
+        ("the ends of the format", vertices(&ends), vec![[0, 1, 2], [3, 1, 0], [2, 3, 1], [0, 3, 2]]),
+        ("one corner three times", vertices(&CORNERS), vec![[0, 0, 0], [1, 1, 2], [2, 3, 2]]),
+        ("four vertices in one place", vertices(&[[0.25; 3]; 4]), vec![[0, 1, 2], [1, 2, 3]]),
+        ("all on a line", vertices(&[[-2.0; 3], [0.0; 3], [1.0; 3], [2.0; 3]]), vec![[0, 1, 2], [1, 3, 2]]),
+        ("all in the origin", vertices(&[[0.0; 3]; 4]), vec![[0, 1, 2]]),
+        (
+            "a step of the format",
+            vertices(&[[0.0; 3], [STEP, 0.0, 0.0], [0.0, STEP, 0.0], [0.0; 3]]),
+            vec![[0, 1, 2]],
+        ),
+        ("no triangles", vertices(&CORNERS), Vec::new()),
+        ("no vertices", Vec::new(), Vec::new()),
+    ]
+}
+
+fn translation(bits: [i32; 3]) -> Vec3 {
+    let [x, y, z] = bits.map(I16F16::from_bits);
+    Vec3::new(x, y, z)
+}
+
+/// Poses by what is wrong with them.
+fn poses() -> Vec<(&'static str, Pose)> {
+    let before = Pose::IDENTITY.at(Vec3::lit(0.0, 0.0, -3.0));
+    let rotation =
+        |bits: [[i16; 3]; 3]| Pose { rotation: bits.map(|row| row.map(I2F14::from_bits)), ..before };
+    vec![
+        ("before the eye", before),
+        ("a corner in the eye", Pose::IDENTITY.at(Vec3::lit(1.0, 1.0, 0.0))),
+        ("around the eye", Pose::IDENTITY),
+        ("behind the eye", Pose::IDENTITY.at(Vec3::lit(0.0, 0.0, 3.0))),
+        ("edge on", before.rotated_y(Turn::from_degrees(90))),
+        ("a scale of nothing", before.scaled(U10F22::ZERO)),
+        ("the smallest scale", before.scaled(U10F22::from_bits(1))),
+        ("the largest scale", before.scaled(U10F22::MAX)),
+        ("a singular matrix", rotation([[1 << 14, 0, 0], [1 << 14, 0, 0], [0, 0, 0]])),
+        ("a matrix of nothing", rotation([[0; 3]; 3])),
+        ("a matrix of the least", rotation([[i16::MIN; 3]; 3])),
+        ("a matrix of the most", Pose { scale: U10F22::MAX, ..rotation([[i16::MAX; 3]; 3]) }),
+        ("a mirror", rotation([[-(1 << 14), 0, 0], [0, 1 << 14, 0], [0, 0, 1 << 14]])),
+        ("the world's low end", Pose { translation: translation([i32::MIN; 3]), ..Pose::IDENTITY }),
+        (
+            "the world's high end",
+            Pose { translation: translation([i32::MAX; 3]), ..before.scaled(U10F22::MAX) },
+        ),
+        ("the world's far end", Pose::IDENTITY.at(translation([0, 0, i32::MIN])).scaled(U10F22::MAX)),
+    ]
+}
+
+/// Cameras by what is wrong with them.
+fn cameras(size: Size) -> Vec<(&'static str, Camera)> {
+    let plain = Camera::focal(30.0, size);
+    let orthographic = Camera::orthographic(8.0, size);
+    let wild =
+        Pose { rotation: [[I2F14::MIN; 3]; 3], scale: U10F22::ZERO, translation: translation([i32::MAX; 3]) };
+    vec![
+        ("ordinary", plain),
+        ("the smallest near", plain.near(0.0)),
+        ("the largest near", plain.near(f32::INFINITY)),
+        ("far before near", plain.near(2.0).far(1.0)),
+        ("far where near is", plain.near(2.0).far(2.0)),
+        ("the smallest far", plain.far(0.0)),
+        ("the shortest focal length", Camera::focal(0.0, size)),
+        ("the longest focal length", Camera::focal(f32::INFINITY, size).near(0.0)),
+        ("an angle of nothing", Camera::perspective(Turn::ZERO, size)),
+        ("an angle of a whole turn", Camera::perspective(Turn::from_raw(u16::MAX), size)),
+        ("a viewport to the left of the target", plain.viewport(Point::new(-1023, 0))),
+        ("a viewport below the target", plain.viewport(Point::new(5, i32::MAX))),
+        ("a viewport partly outside", plain.viewport(Point::new(-7, 9))),
+        ("the line of sight far off", plain.off_axis(I12F4::MAX, I12F4::MIN)),
+        (
+            "both as far as they go",
+            plain.viewport(Point::new(i32::MIN, i32::MIN)).off_axis(I12F4::MIN, I12F4::MIN),
+        ),
+        ("orthographic", orthographic),
+        ("orthographic, far before near", orthographic.near(5.0).far(1.0)),
+        ("orthographic, far where near is", orthographic.near(5.0).far(5.0)),
+        ("orthographic, from end to end", orthographic.near(0.0).far(f32::INFINITY)),
+        ("orthographic, the largest scale", Camera::orthographic(f32::INFINITY, size).near(0.0).far(1e-9)),
+        ("orthographic, the smallest scale", Camera::orthographic(f32::NAN, size)),
+        (
+            "orthographic, off-axis",
+            orthographic.viewport(Point::new(1023, -1023)).off_axis(I12F4::MIN, I12F4::MAX),
+        ),
+        ("no rotation at all, at the world's end", plain.pose(wild)),
+        ("at the world's other end", plain.at(translation([i32::MIN; 3]))),
+    ]
+}
+
+const SIZES: [(u32, u32); 7] = [(0, 0), (1, 1), (0, 9), (9, 0), (1, 40), (40, 1), (24, 20)];
+
+/// Everything with everything; how many combinations were drawn, and how many of these left a pixel.
+fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
+    let (mut drawn, mut seen) = (0, 0);
+    for (width, height) in SIZES {
+        let size = Size::new(width, height);
+        let words = (width * height) as usize;
+        let (mut pixels, mut depth) = (vec![0_u16; words + SPARE], vec![0_u16; words + SPARE]);
+        for (mesh_name, vertices, triangles) in &meshes() {
+            let mesh = Mesh::try_new(vertices, triangles).expect("the indices are in range");
+            for (pose_name, pose) in &poses() {
+                for (camera_name, camera) in &cameras(size) {
+                    for (material_name, material) in materials {
+                        let about = || {
+                            format!(
+                                "{mesh_name}, {pose_name}, {camera_name}, {material_name}, {width} x {height}"
+                            )
+                        };
+                        pixels.fill(0x1234);
+                        depth.fill(0);
+                        let mut band = Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth)
+                            .expect("the slices are long enough")
+                            .starting_at(row);
+                        let mut stats = Stats::default();
+                        camera.draw_counted(&mesh, pose, material, &mut band, &mut stats);
+                        assert_eq!(stats.meshes, 1, "{}", about());
+                        assert!(
+                            pixels[words..].iter().all(|word| *word == 0x1234),
+                            "pixels past: {}",
+                            about()
+                        );
+                        assert!(depth[words..].iter().all(|word| *word == 0), "depths past: {}", about());
+                        let touched =
+                            pixels.iter().zip(&depth).any(|(word, depth)| *depth == 0 && *word != 0x1234);
+                        assert!(!touched, "a pixel without depth: {}", about());
+                        drawn += 1;
+                        seen += u32::from(depth.iter().any(|depth| *depth > 0));
+                    }
+                }
+            }
+        }
+    }
+    (drawn, seen)
+}
+
+#[test]
+fn every_mesh_pose_camera_and_target_at_its_extremes_72_576_combinations() {
+    let texels: Vec<u16> = (0..1 << 10).collect();
+    let texture = Texture::new(&texels, 5, 5);
+    let lights = [
+        Light::directional(Vec3::ZERO, [255; 3]),
+        Light::directional(translation([i32::MIN; 3]), [255; 3]),
+        Light::point(Vec3::ZERO, [255; 3], I16F16::MAX),
+        Light::point(translation([i32::MAX; 3]), [255; 3], I16F16::ZERO),
+    ];
+    let lights = Lights::new([255; 3], &lights);
+    let materials = [
+        ("texture", Material::textured(&texture).cull(Cull::None)),
+        ("repeated and lit", Material::textured(&texture).texture_scale(u8::MAX).lit(&lights).faceted()),
+        ("lit on both sides", Material::gouraud().lit(&lights).two_sided().cull(Cull::None)),
+    ];
+    let (drawn, seen) = draw_all(0, &materials);
+    println!("extremes: {drawn} combinations, {seen} of them with a pixel");
+    assert!(drawn == 72_576 && seen > 800);
+}

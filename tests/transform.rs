@@ -1,0 +1,409 @@
+//! The promise: a vertex is drawn within 1/16 pixel of where the same mesh, pose and camera put it in `f64`, and where it
+//! is nearer than ¼ unit the error grows no faster than 1/w; `Camera::project` and `Camera::unproject` agree with that;
+//! nothing that is seen is left out with its bounding sphere; the counts of `Stats` add up.
+//!
+//! `cargo test --test transform -- --nocapture` prints the largest errors, and transforms per vertex.
+#![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
+
+mod common;
+mod reference;
+
+use std::cell::RefCell;
+use std::marker::PhantomData;
+
+use common::view::{Model, Numbered, lens, placement, position, view};
+use common::{Counting, Drawn, Record, Recording, Strip, for_all};
+use fixel::embedded_graphics::prelude::{Point, Size};
+use fixel::fixed::types::{I4F12, I12F4, I16F16, U10F22};
+use fixel::shapes::{Shape, cube, grid, icosphere, torus};
+use fixel::{
+    Band, Camera, Cull, Exact, Inputs, Mesh, Pose, Quaternion, Shader, Stats, Turn, Varying, Vec3, Vertex,
+};
+use proptest::prelude::*;
+use reference::view::{Lens, Placement};
+
+const STRIP: Strip = Strip::new(160, 120, 0);
+const SCREEN: Size = STRIP.size();
+
+fn turns() -> impl Strategy<Value = [Turn; 3]> {
+    any::<[u16; 3]>().prop_map(|turns| turns.map(Turn::from_raw))
+}
+
+fn world(at: [f64; 3]) -> Vec3 {
+    let [x, y, z] = at.map(|at| I16F16::saturating_from_num(at));
+    Vec3::new(x, y, z)
+}
+
+fn numbers(at: Vec3) -> [f64; 3] {
+    [at.x, at.y, at.z].map(|at| f64::from(at.to_bits()) / 65536.0)
+}
+
+/// A camera, and what it does not say of itself.
+#[derive(Clone, Copy, Debug)]
+struct Eye {
+    camera: Camera,
+    orthographic: bool,
+    /// Of the viewport.
+    corner: [i32; 2],
+}
+
+/// A camera of any kind: perspective or orthographic, off-axis or not, with a viewport that is all of the screen or not.
+fn eyes() -> impl Strategy<Value = Eye> {
+    prop_oneof![2 => eyes_of(false), 1 => eyes_of(true)]
+}
+
+fn eyes_of(orthographic: bool) -> impl Strategy<Value = Eye> {
+    let off = || prop_oneof![2 => Just(0_i16), 1 => -1600..1600_i16];
+    let corner = || prop_oneof![2 => Just(0), 1 => -100..100_i32];
+    let lens = (10.0..600.0_f32, [off(), off()], [corner(), corner()]);
+    let reach = prop_oneof![1 => Just(1.0), 1 => Just(1000.0), 1 => Just(20_000.0_f64)];
+    (lens, turns(), reach, [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0]).prop_map(
+        move |((focal, off, corner), [yaw, pitch, roll], reach, at)| {
+            let camera = if orthographic {
+                Camera::orthographic(focal / 16.0, SCREEN)
+            } else {
+                // As near as it goes.
+                Camera::focal(focal, SCREEN).near(0.0)
+            };
+            let [right, down] = off.map(I12F4::from_bits);
+            let camera = camera.viewport(Point::new(corner[0], corner[1])).off_axis(right, down);
+            let camera = camera.heading(yaw, pitch, roll).at(world(at.map(|at| at * reach)));
+            Eye { camera, orthographic, corner }
+        },
+    )
+}
+
+impl Eye {
+    fn lens(&self) -> Lens {
+        lens(&self.camera, self.orthographic)
+    }
+
+    /// Where a place before it (right, up, w) is in the world.
+    fn place(&self, [right, up, w]: [f64; 3]) -> [f64; 3] {
+        let Placement { rotation, translation, .. } = placement(self.camera.placement());
+        [0, 1, 2].map(|i| rotation[i][0] * right + rotation[i][1] * up - rotation[i][2] * w + translation[i])
+    }
+
+    /// So many pixels to the right of and above the line of sight, and so far away.
+    fn beside(&self, [x, y]: [f64; 2], w: f64) -> [f64; 3] {
+        let divisor = if self.orthographic { 1.0 } else { w };
+        let [right, up] = [x, y].map(|at| at / self.lens().focal * divisor);
+        [right, up, w]
+    }
+
+    /// Whether the viewport has this pixel.
+    fn shows(&self, (x, y): (i32, i32)) -> bool {
+        let inside = |at: i32, corner: i32, side: u32| (corner..corner + side as i32).contains(&at);
+        inside(x, self.corner[0], SCREEN.width) && inside(y, self.corner[1], SCREEN.height)
+    }
+}
+
+#[test]
+fn points_in_perspective_are_within_a_32th_of_a_pixel_and_come_back_in_50_000_cases() {
+    projected("points in perspective", 50_000, false);
+}
+
+#[test]
+fn points_without_perspective_are_within_a_32th_of_a_pixel_and_depth_is_linear_in_10_000_cases() {
+    projected("points without perspective", 10_000, true);
+}
+
+fn projected(name: &str, cases: u32, orthographic: bool) {
+    // By the distance: nearer than 2⁻⁸, 2⁻⁶, ¼, 16, and beyond. (Errors in 1/16 pixel.)
+    let worst = RefCell::new([0.0_f64; 5]);
+    let back = RefCell::new(0.0_f64);
+    let place = ([-600.0..600.0_f64, -400.0..400.0], -14.0..12.0_f64);
+    for_all(name, cases, (eyes_of(orthographic), place), |(eye, (at, w))| {
+        let w = 2_f64.powf(w);
+        let Eye { camera, orthographic, .. } = eye;
+        let point = world(eye.place(eye.beside(at, w)));
+        let exact = view(&camera, &Pose::IDENTITY.at(point), orthographic);
+        let Some((at, w)) = exact.screen([0.0; 3]) else { return Ok(()) };
+        let (near, far) = (eye.lens().near, eye.lens().far);
+        let Some(projected) = camera.project(point) else {
+            let inside =
+                at.iter().all(|at| (-1022.9..1021.9).contains(at)) && w > near * 1.001 && w < far * 0.999;
+            prop_assert!(!inside, "{:?} at {:?}, w {}, is not projected", point, at, w);
+            return Ok(());
+        };
+        let drawn = [projected.x, projected.y].map(|at| f64::from(at.to_bits()));
+        let error = (drawn[0] - at[0] * 16.0).abs().max((drawn[1] - at[1] * 16.0).abs());
+        let class = [2_f64.powi(-8), 2_f64.powi(-6), 0.25, 16.0].iter().filter(|limit| w >= **limit).count();
+        let class = if orthographic { 4 } else { class };
+        let worst = &mut worst.borrow_mut()[class];
+        *worst = worst.max(error);
+        // Rounded, and not much else: 1/32 pixel and 1/1024.
+        let room = 0.5 + 16.0 / 1024.0 * if orthographic { 1.0 } else { (0.25 / w).max(1.0) };
+        prop_assert!(error <= room, "{} of 1/16 pixel at w {}, {:?} {:?}", error, w, at, camera);
+        let q = f64::from(projected.q.to_bits()) / 2_f64.powi(31);
+        // A depth step. Of w the last bit is 2⁻²⁴ (times the scale, which is 1 here): half of that is more nearer than 2⁻⁹.
+        let steps = if orthographic { 1.0 } else { (2_f64.powi(-9) * exact.q(w) / w).max(1.0) };
+        prop_assert!(
+            (q - exact.q(w).min(1.0)).abs() < steps / 65536.0,
+            "q {} of {} at w {}",
+            q,
+            exact.q(w),
+            w
+        );
+
+        // And back, at that distance along the line of sight: a few of the world's last bits off.
+        let distance = I16F16::from_num(w);
+        let found = numbers(camera.unproject(projected.x, projected.y, distance));
+        let center = eye.lens().center;
+        let [right, up] = [drawn[0] / 16.0 - center[0], center[1] - drawn[1] / 16.0];
+        let before = eye.beside([right, up], distance.to_num());
+        let wanted = eye.place(before);
+        // The world ends at 32768, and so does what is before the camera.
+        let camera = placement(camera.placement()).translation;
+        let moved = [0, 1, 2].map(|i| wanted[i] - camera[i]);
+        if before.iter().chain(&wanted).chain(&moved).all(|at| at.abs() < 32767.0) {
+            let away = (0..3).map(|i| (found[i] - wanted[i]).abs()).fold(0.0, f64::max) * 65536.0;
+            prop_assert!(away <= 3.0, "unprojected {} of 2^-16 away from {:?}", away, wanted);
+            let back = &mut back.borrow_mut();
+            **back = back.max(away);
+        }
+        Ok(())
+    });
+    println!(
+        "{name}: off by at most {:.4?} of 1/16 pixel at w below 2^-8, 2^-6, 1/4, 16 and beyond; back within {:.2} of \
+         2^-16",
+        worst.into_inner(),
+        back.into_inner()
+    );
+}
+
+/// What a mesh leaves on a screen.
+fn draw(eye: &Eye, pose: &Pose, mesh: &Mesh<'_>, cull: Cull, stats: &mut Stats) -> Record {
+    let mut drawn = Record::blank(STRIP);
+    let mut band = Band::<Recording, Counting>::new(SCREEN, &mut drawn.pixels, &mut drawn.depth)
+        .expect("the sizes agree");
+    let shader = Numbered::<Exact> { number: 0, cull, quality: PhantomData };
+    eye.camera.draw_counted(mesh, pose, &shader, &mut band, stats);
+    drawn
+}
+
+#[test]
+fn vertices_are_drawn_where_f64_puts_them_at_scales_of_a_thousandth_to_a_thousand_in_10_000_cases() {
+    let counts = RefCell::new([0_u32; 3]);
+    let place = || ([-90.0..90.0_f64, -70.0..70.0], 0.3..1.7_f64);
+    let cases = (eyes(), [place(), place(), place()], -3.0..3.0_f64, turns());
+    for_all("drawn vertices", 10_000, cases, |(eye, places, scale, [a, b, c])| {
+        // The mesh stands before the camera three times as far away as its unit is long.
+        let scale = U10F22::from_num(10_f64.powf(scale).min(1000.0));
+        let size = scale.to_num::<f64>();
+        let stands = world(eye.place([0.0, 0.0, 3.0 * size]));
+        let pose = Pose::from_quaternion(Quaternion::from_euler(a, b, c)).scaled(scale).at(stands);
+        let Placement { rotation, translation, .. } = placement(&pose);
+        let vertices = places.map(|(at, w)| {
+            let place = eye.place(eye.beside(at, w * 3.0 * size));
+            let away = [0, 1, 2].map(|i| place[i] - translation[i]);
+            let turned = [0, 1, 2].map(|i| (0..3).map(|k| rotation[k][i] * away[k]).sum::<f64>() / size);
+            Vertex { position: turned.map(|at| I4F12::saturating_from_num(at)), ..Vertex::default() }
+        });
+        let exact = view(&eye.camera, &pose, eye.orthographic);
+        let mut corners =
+            [reference::Corner { x: 0, y: 0, q: 1 << 20, attributes: [0; reference::ATTRIBUTES] }; 3];
+        for (corner, vertex) in corners.iter_mut().zip(&vertices) {
+            let lens = eye.lens();
+            let on_screen = exact.screen(position(vertex)).filter(|(at, w)| {
+                let between = *w > lens.near * 1.01 && *w < lens.far * 0.99;
+                between && at.iter().all(|at| at.abs() < 1020.0)
+            });
+            let Some((at, w)) = on_screen else {
+                counts.borrow_mut()[1] += 1;
+                return Ok(());
+            };
+            // Where the middle between two places is so close, either is right: 1/256 pixel.
+            let doubt = 1.0 / 16.0 * if eye.orthographic { 1.0 } else { (0.25 / w).max(1.0) };
+            if at.iter().any(|at| ((at * 16.0).rem_euclid(1.0) - 0.5).abs() < doubt) {
+                counts.borrow_mut()[2] += 1;
+                return Ok(());
+            }
+            [corner.x, corner.y] = at.map(|at| (at * 16.0).round() as i32);
+        }
+        counts.borrow_mut()[0] += 1;
+        let triangle = reference::Triangle(corners);
+        let drawn = draw(&eye, &pose, &Mesh::new(&vertices, &[[0, 1, 2]]), Cull::None, &mut Stats::default());
+        for ((x, y), _, met) in drawn.iter() {
+            let inside = eye.shows((x, y)) && triangle.covers(x, y);
+            prop_assert_eq!(met.times, u32::from(inside), "at {}, {} of {:?}, scale {}", x, y, corners, size);
+        }
+        Ok(())
+    });
+    let [held, out, unsure] = counts.into_inner();
+    println!(
+        "drawn vertices: {held} triangles drawn pixel for pixel as snapped from f64; {out} out of the picture, {unsure} \
+         within 1/256 pixel of the middle between two places"
+    );
+    assert!(held > common::cases(10_000) / 5);
+}
+
+static GRID: Shape<1089, 2048> = grid(15.0, 15.0, 32, 32, [256, 256]);
+static RING: Shape<500, 1000> = torus(5.0, 2.0, 25, 20);
+static BALL: Shape<642, 1280> = icosphere(7.9, 8);
+static CUBE: Shape<24, 12> = cube(12.0, [64, 64]);
+
+#[test]
+fn no_mesh_is_left_out_that_has_a_pixel_and_counts_add_up_in_4_000_cases() {
+    let counts = RefCell::new([0_u32; 4]);
+    let model = Model::new(&CUBE.mesh());
+    let mesh = model.mesh();
+    let place = ([-400.0..400.0_f64, -300.0..300.0], -4.0..20.0_f64);
+    let cases =
+        (eyes(), place, -3.0..3.0_f64, turns(), 0..3_usize, prop::option::weighted(0.3, 0.5..30.0_f64));
+    for_all("left out", 4_000, cases, |(eye, (at, w), scale, [a, b, c], cull, far)| {
+        let scale = U10F22::from_num(10_f64.powf(scale));
+        let size = scale.to_num::<f64>();
+        let eye = match far {
+            Some(far) => Eye { camera: eye.camera.far((far * size) as f32), ..eye },
+            None => eye,
+        };
+        let stands = world(eye.place(eye.beside(at, w * size)));
+        let pose = Pose::from_quaternion(Quaternion::from_euler(a, b, c)).scaled(scale).at(stands);
+        let cull = [Cull::None, Cull::Back, Cull::Front][cull];
+        let mut stats = Stats::default();
+        let drawn = draw(&eye, &pose, &mesh, cull, &mut stats);
+        let exact = view(&eye.camera, &pose, eye.orthographic);
+        let facets = model
+            .triangles
+            .iter()
+            .map(|corners| exact.facet(corners.map(|i| position(&model.vertices[usize::from(i)]))));
+        let facets: Vec<_> = facets
+            .filter(|facet| match cull {
+                Cull::None => facet.turn != 0.0,
+                Cull::Back => facet.turn < 0.0,
+                Cull::Front => facet.turn > 0.0,
+            })
+            .collect();
+        let mut seen = false;
+        for ((x, y), _, met) in drawn.iter() {
+            seen |= met.times > 0;
+            // A part of the pixels, as facets may fill the screen.
+            if (x + 3 * y) % 7 != 0 {
+                continue;
+            }
+            let depths = || facets.iter().map(|facet| facet.depth([f64::from(x) + 0.5, f64::from(y) + 0.5]));
+            let shown = eye.shows((x, y));
+            let most = depths().filter(|depth| *depth >= -0.125).count();
+            let least = depths().filter(|depth| *depth >= 0.125).count();
+            let range = if shown { least..=most } else { 0..=0 };
+            prop_assert!(
+                range.contains(&(met.times as usize)),
+                "{:?} at {}, {}: {:?} {:?}",
+                range,
+                x,
+                y,
+                met,
+                stats
+            );
+        }
+        let Stats {
+            meshes,
+            meshes_out_of_sight,
+            triangles,
+            transformed,
+            clipped,
+            culled,
+            out_of_sight,
+            rejected,
+            drawn,
+        } = stats;
+        prop_assert_eq!((meshes, triangles), (1, if meshes_out_of_sight == 1 { 0 } else { 12 }));
+        prop_assert!(meshes_out_of_sight <= 1 && clipped <= triangles && transformed <= 3 * triangles);
+        // Each triangle ends up in one of these, a clipped one in up to seven parts or in none.
+        let ends = culled + out_of_sight + rejected + drawn;
+        prop_assert!(ends >= triangles - clipped && ends <= triangles + 6 * clipped, "{:?}", stats);
+        prop_assert!(drawn > 0 || !seen);
+        prop_assert!(rejected == 0, "{:?}", stats);
+        let mut counts = counts.borrow_mut();
+        counts[0] += u32::from(seen);
+        counts[1] += meshes_out_of_sight;
+        counts[2] += u32::from(meshes_out_of_sight == 0 && !seen);
+        counts[3] += u32::from(clipped > 0);
+        Ok(())
+    });
+    let [seen, out, nothing, clipped] = counts.into_inner();
+    println!(
+        "left out: {seen} cubes seen, {clipped} of them or of the others clipped, {out} left out whole, {nothing} drawn in vain"
+    );
+    assert!(seen > common::cases(4_000) / 10 && out > common::cases(4_000) / 10);
+}
+
+#[test]
+fn a_vertex_is_transformed_about_as_often_as_neighbours_are_apart() {
+    let eye = Eye { camera: Camera::focal(200.0, SCREEN), orthographic: false, corner: [0, 0] };
+    let pose = Pose::IDENTITY.at(Vec3::lit(0.0, 0.0, -30.0));
+    for (name, mesh) in [
+        ("grid of 32 x 32 squares", GRID.mesh()),
+        ("torus of 25 x 20", RING.mesh()),
+        ("icosphere of 1280", BALL.mesh()),
+    ] {
+        let mut stats = Stats::default();
+        draw(&eye, &pose, &mesh, Cull::Back, &mut stats);
+        let triangles = mesh.triangles().len();
+        assert_eq!((stats.triangles, stats.clipped, stats.rejected), (triangles as u32, 0, 0));
+        let per_vertex = f64::from(stats.transformed) / mesh.vertices().len() as f64;
+        let per_triangle = f64::from(stats.transformed) / triangles as f64;
+        println!("{name}: {per_vertex:.2} transforms a vertex, {per_triangle:.2} a triangle");
+        assert!(per_vertex >= 1.0 && per_triangle < 3.0, "{stats:?}");
+    }
+}
+
+/// Another shader's texture, repeated more often.
+struct Scaled(Numbered<Exact>, u32);
+
+impl Shader<Recording> for Scaled {
+    type Quality = Exact;
+
+    fn inputs(&self) -> Inputs {
+        Inputs::Uv
+    }
+
+    fn color(&self, varying: &Varying) -> Drawn {
+        self.0.color(varying)
+    }
+
+    fn texture_scale(&self) -> u32 {
+        self.1
+    }
+}
+
+#[test]
+fn one_byte_indices_and_parts_draw_the_same_and_a_texture_scale_multiplies_in_300_cases() {
+    let model = Model::new(&CUBE.mesh());
+    let bytes: Vec<_> = model.triangles.iter().map(|corners| corners.map(|i| i as u8)).collect();
+    let (wide, narrow) =
+        (model.mesh(), Mesh::try_new_u8(&model.vertices, &bytes).expect("the indices are in range"));
+    let place = ([-100.0..100.0_f64, -80.0..80.0], 0.0..40.0_f64);
+    for_all(
+        "the same picture",
+        300,
+        (eyes(), place, turns(), 0..14_usize, 0..=8_u32),
+        |(eye, (at, w), [a, b, c], cut, log2)| {
+            let pose = Pose::from_quaternion(Quaternion::from_euler(a, b, c))
+                .at(world(eye.place(eye.beside(at, w))));
+            let (mut once, mut again) = (Stats::default(), Stats::default());
+            let picture = draw(&eye, &pose, &wide, Cull::Back, &mut once);
+            prop_assert!(picture == draw(&eye, &pose, &narrow, Cull::Back, &mut again));
+            prop_assert_eq!(once, again);
+
+            let mut parts = Record::blank(STRIP);
+            let mut scaled = Record::blank(STRIP);
+            let mut band = Band::<Recording, Counting>::new(SCREEN, &mut parts.pixels, &mut parts.depth)
+                .expect("the sizes agree");
+            let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
+            for mesh in [wide.part(0, cut), narrow.part(cut, usize::MAX)] {
+                eye.camera.draw(&mesh, &pose, &shader, &mut band);
+            }
+            prop_assert!(picture == parts);
+            let mut band = Band::<Recording, Counting>::new(SCREEN, &mut scaled.pixels, &mut scaled.depth)
+                .expect("the sizes agree");
+            eye.camera.draw(&wide, &pose, &Scaled(shader, log2), &mut band);
+            for ((pixel, plain, _), (_, scaled, _)) in picture.iter().zip(scaled.iter()) {
+                let wanted = [0, 1].map(|i: usize| plain.attributes[i] << log2);
+                prop_assert_eq!(&wanted[..], &scaled.attributes[..2], "at {:?}", pixel);
+            }
+            Ok(())
+        },
+    );
+}

@@ -1,0 +1,641 @@
+//! The promise: no viewpoint breaks the picture. A camera is flown at random around, into and through meshes, and every
+//! pixel is held against what a mathematician says of the same mesh, pose and camera, read back from the crate's numbers.
+//!
+//! # What is exact and what has room
+//!
+//! Corners are snapped to 1/16 pixel and may be off by that much, so the picture's outline may be off by less
+//! than 1/8 pixel. Hence for each pixel centre:
+//!
+//! - it must be covered if no place within 1/8 pixel is outside the picture, and must not if none is inside;
+//! - where the snapped picture of a mesh is exact whatever the rounding, it is held exactly: what is closed has as
+//!   many fronts as backs at every pixel, and of a plane cut into many triangles just one more;
+//! - a convex mesh covers a pixel once. A triangle or a piece of one that is thinner than 3/16 pixel may be turned over by
+//!   snapping: within 1/8 pixel of such a one nothing is said of how often a pixel is covered.
+//!
+//! Attributes: a pixel of a snapped triangle has shares λ of its corners. With the same shares of the exact corners one
+//! gets to another place, at most as far away as any corner was moved, and there the exact attribute is what the
+//! snapped triangle's is here. The same goes for the pieces of a clipped triangle, whose new corners lie on the exact
+//! edges up to the same snapping. So a drawn attribute must be one of those that the exact triangle has within 1/16 pixel
+//! to the left, right, up and down (at the corners of this square are the extremes, as it is a quotient of linear
+//! functions), give or take the contract's bound. What it is off by from the exact one at the centre is printed as well.
+//!
+//! Of a triangle that is not clipped, whose corners do not lie so close to the middle between two places that either would be
+//! right, the snapped corners are known. There the pixels must be exactly those of the exact integer
+//! rasterizer, and attributes within the contract's bound with nothing taken off.
+//!
+//! `cargo test --test views -- --nocapture` prints how many pixels were decided, and the largest errors.
+#![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
+
+mod common;
+mod reference;
+
+use std::cell::RefCell;
+use std::marker::PhantomData;
+
+use common::view::{Model, Numbered, position, texel, view};
+use common::{Counting, Drawn, Record, Recording, Strip, for_all};
+use fixel::embedded_graphics::prelude::Size;
+use fixel::fixed::types::{I12F4, I16F16, U10F22};
+use fixel::shapes::{Shape, cube, grid, icosphere, quad, torus, uv_sphere};
+use fixel::{
+    Band, Camera, Cull, Exact, Mesh, Pose, Quality, QuarterPixel, Quaternion, Stats, Turn, Vec3, Vertex,
+};
+use proptest::prelude::*;
+use reference::view::{Facet, View};
+use reference::{Corner, Triangle, UNIT};
+
+const SCREEN: Strip = Strip::new(48, 40, 0);
+
+/// How far, in pixels, a corner may be from where it belongs, along x and along y.
+const SNAPPING: f64 = 1.0 / 16.0;
+/// How far, in pixels, the outline may be from where it belongs.
+const MARGIN: f64 = 1.0 / 8.0;
+/// A triangle thinner than this many pixels may be turned over when its corners are snapped.
+const THIN: f64 = 3.0 / 16.0;
+
+/// How much closer to one place than to the next, in 1/16 pixel, a corner must be for its place to be known.
+const DOUBT: f64 = 0.1;
+
+/// What may be said of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Closed, and no line meets it more than twice.
+    Convex,
+    /// As that, turned inside out.
+    Room,
+    Closed,
+    /// In one plane.
+    Plane,
+    Any,
+}
+
+struct Scene {
+    name: &'static str,
+    kind: Kind,
+    model: Model,
+    /// How far from the origin the camera flies, in mesh units.
+    reach: [f64; 3],
+}
+
+/// One view of a scene.
+#[derive(Clone, Debug)]
+struct Flight {
+    /// Mesh units to the world, log₁₀.
+    scale: f64,
+    /// Of the mesh, in turns.
+    attitude: [u16; 3],
+    /// The mesh's place in the world, in parts of what the world has room for.
+    place: [f64; 3],
+    /// The camera's place in parts of the reach, from −1 to 1.
+    eye: [f64; 3],
+    heading: [u16; 3],
+    /// Look at this vertex instead.
+    target: Option<usize>,
+    focal: f32,
+    /// In mesh units, log₁₀.
+    near: f64,
+    exact: bool,
+}
+
+fn flights() -> impl Strategy<Value = Flight> {
+    let place = prop_oneof![1 => Just(0.0), 1 => -1.0..1.0_f64];
+    let eye = || prop_oneof![3 => -1.0..1.0_f64, 1 => -0.1..0.1_f64];
+    let lens = (prop_oneof![4 => 15.0..80.0_f32, 1 => 80.0..2000.0_f32], -3.0..0.5_f64);
+    let scale = prop_oneof![2 => -3.0..3.0_f64, 1 => Just(0.0)];
+    let places = ([place.clone(), place.clone(), place], [eye(), eye(), eye()]);
+    let turns = (any::<[u16; 3]>(), any::<[u16; 3]>(), prop::option::weighted(0.6, 0..2000_usize));
+    (scale, places, turns, lens, any::<bool>()).prop_map(
+        |(scale, (place, eye), (attitude, heading, target), (focal, near), exact)| Flight {
+            scale,
+            attitude,
+            place,
+            eye,
+            heading,
+            target,
+            focal,
+            near,
+            exact,
+        },
+    )
+}
+
+fn world(at: [f64; 3]) -> Vec3 {
+    let [x, y, z] = at.map(|at| I16F16::saturating_from_num(at));
+    Vec3::new(x, y, z)
+}
+
+impl Flight {
+    fn pose(&self) -> Pose {
+        let scale = U10F22::saturating_from_num(10_f64.powf(self.scale));
+        let [yaw, pitch, roll] = self.attitude.map(Turn::from_raw);
+        // The mesh and the camera around it within ±32768.
+        let room = 32000.0 - 24.0 * scale.to_num::<f64>();
+        let attitude = Quaternion::from_euler(yaw, pitch, roll);
+        Pose::from_quaternion(attitude).scaled(scale).at(world(self.place.map(|at| at * room)))
+    }
+
+    fn camera(&self, scene: &Scene, pose: &Pose) -> Camera {
+        let to_world = common::view::placement(pose);
+        let in_world = |at: [f64; 3]| {
+            world([0, 1, 2].map(|i| {
+                let turned: f64 = (0..3).map(|k| to_world.rotation[i][k] * at[k]).sum();
+                turned * to_world.scale + to_world.translation[i]
+            }))
+        };
+        let near = (10_f64.powf(self.near) * to_world.scale) as f32;
+        let camera = Camera::focal(self.focal, Size::new(SCREEN.width, SCREEN.height))
+            .near(near)
+            .at(in_world([0, 1, 2].map(|i| self.eye[i] * scene.reach[i])));
+        let [yaw, pitch, roll] = self.heading.map(Turn::from_raw);
+        let camera = camera.heading(yaw, pitch, roll);
+        match self.target {
+            Some(vertex) => {
+                let vertex = &scene.model.vertices[vertex % scene.model.vertices.len()];
+                camera.look_at(
+                    in_world(position(vertex)),
+                    camera.unproject(I12F4::ZERO, I12F4::MIN, I16F16::ONE),
+                )
+            }
+            None => camera,
+        }
+    }
+}
+
+/// What the reference says of a pixel.
+#[derive(Clone, Copy, Debug, Default)]
+struct Said {
+    /// Inside the picture, as is all around it.
+    must: bool,
+    /// Inside the picture or almost.
+    may: bool,
+    /// Near something that snapping may turn over.
+    thin: bool,
+    inside: bool,
+    near_contour: bool,
+}
+
+impl Said {
+    fn must(&self) -> bool {
+        self.must || self.inside && !self.near_contour
+    }
+}
+
+fn centre((x, y): (i32, i32)) -> [f64; 2] {
+    [f64::from(x) + 0.5, f64::from(y) + 0.5]
+}
+
+/// The pixels within `margin` of a box around these points.
+fn around(points: impl Iterator<Item = [f64; 2]>) -> impl Iterator<Item = (i32, i32)> {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    let range = |axis: usize, side: u32| {
+        let start = (low[axis] - 1.0).floor().clamp(0.0, f64::from(side)) as i32;
+        start..(high[axis] + 1.0).ceil().clamp(0.0, f64::from(side)) as i32
+    };
+    let (columns, rows) = (range(0, SCREEN.width), range(1, SCREEN.height));
+    rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+}
+
+fn index((x, y): (i32, i32)) -> usize {
+    (y * SCREEN.width as i32 + x) as usize
+}
+
+/// What is to be seen of the facets that `drawn` is true of.
+fn say(model: &Model, facets: &[Facet], drawn: &[bool]) -> Vec<Said> {
+    let mut said = vec![Said::default(); SCREEN.len()];
+    for (number, facet) in facets.iter().enumerate() {
+        let thin = facet.thickness() < THIN || facet.turn == 0.0;
+        if !(drawn[number] || thin) {
+            continue;
+        }
+        for pixel in around(facet.outline.iter().map(|side| side.from)) {
+            let depth = facet.depth(centre(pixel));
+            let said = &mut said[index(pixel)];
+            if depth >= -MARGIN {
+                said.may = true;
+                said.thin |= thin;
+            }
+            if drawn[number] {
+                said.inside |= depth >= 0.0;
+                said.must |= depth >= MARGIN;
+            }
+        }
+        if !drawn[number] {
+            continue;
+        }
+        for side in &facet.outline {
+            // Where the picture goes on beyond: another facet that is drawn, on the other side.
+            let beyond = side.edge.and_then(|edge| model.beyond[number][edge]);
+            if beyond.is_some_and(|beyond| drawn[beyond] && facets[beyond].turn * facet.turn > 0.0) {
+                continue;
+            }
+            for pixel in around([side.from, side.to].into_iter()) {
+                said[index(pixel)].near_contour |= side.distance(centre(pixel)) <= MARGIN;
+            }
+        }
+    }
+    said
+}
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, Default)]
+struct Measured {
+    views: u32,
+    /// With at least one pixel.
+    seen: u32,
+    clipped: u32,
+    pixels: u64,
+    must: u64,
+    must_not: u64,
+    thin: u64,
+    /// Pixels covered more often than an exact picture has it, near something thin.
+    turned_over: u64,
+    /// Largest errors in attributes, `QuarterPixel` and `Exact`: with the corners' snapping taken off, and with it.
+    attribute: [f64; 2],
+    raw: [f64; 2],
+    attributes: u64,
+    /// The same of snapped triangles, with nothing taken off.
+    whole: [f64; 2],
+    wholes: u64,
+    /// In depth steps, with the corners' snapping taken off.
+    depth: f64,
+    /// Largest ratio of w in a triangle whose attributes were measured.
+    ratio: f64,
+}
+
+fn draw_all<Q: Quality>(
+    camera: &Camera,
+    mesh: &Mesh<'_>,
+    pose: &Pose,
+    cull: Cull,
+    stats: &mut Stats,
+) -> Record {
+    let mut record = Record::blank(SCREEN);
+    let mut band = Band::<Recording, Counting>::new(SCREEN.size(), &mut record.pixels, &mut record.depth)
+        .expect("the sizes agree");
+    let shader = Numbered::<Q> { number: 0, cull, quality: PhantomData };
+    camera.draw_counted(mesh, pose, &shader, &mut band, stats);
+    record
+}
+
+fn draw_parts<Q: Quality>(camera: &Camera, mesh: &Mesh<'_>, pose: &Pose, cull: Cull) -> Record {
+    let mut record = Record::blank(SCREEN);
+    let mut band = Band::<Recording, Counting>::new(SCREEN.size(), &mut record.pixels, &mut record.depth)
+        .expect("the sizes agree");
+    for number in 0..mesh.triangles().len() {
+        let shader = Numbered::<Q> { number: number as i32, cull, quality: PhantomData };
+        camera.draw(&mesh.part(number, number + 1), pose, &shader, &mut band);
+    }
+    record
+}
+
+fn hold<Q: Quality>(scene: &Scene, flight: &Flight, measured: &mut Measured) -> Result<(), TestCaseError> {
+    let Scene { kind, model, .. } = scene;
+    let (mesh, pose) = (model.mesh(), flight.pose());
+    let camera = flight.camera(scene, &pose);
+    let exact = view(&camera, &pose, false);
+    let cull = if *kind == Kind::Plane { Cull::None } else { Cull::Back };
+    let mut stats = Stats::default();
+    let record = draw_all::<Q>(&camera, &mesh, &pose, cull, &mut stats);
+    let parts = draw_parts::<Q>(&camera, &mesh, &pose, cull);
+    prop_assert!(stats.rejected == 0, "{:?}", stats);
+
+    let places: Vec<_> = model.vertices.iter().map(position).collect();
+    let facets: Vec<_> =
+        model.triangles.iter().map(|corners| exact.facet(corners.map(|i| places[usize::from(i)]))).collect();
+    let drawn: Vec<_> = facets
+        .iter()
+        .map(|facet| if cull == Cull::None { facet.turn != 0.0 } else { facet.turn < 0.0 })
+        .collect();
+    let said = say(model, &facets, &drawn);
+    let snapped: Vec<_> = facets
+        .iter()
+        .zip(&model.triangles)
+        .map(|(facet, corners)| snapped(&exact, model, facet, *corners))
+        .collect();
+
+    measured.views += 1;
+    measured.clipped += u32::from(stats.clipped > 0);
+    let mut seen = false;
+    for (pixel, value, met) in record.iter() {
+        let said = said[index(pixel)];
+        let (alone, alone_met) = (parts.pixels[index(pixel)], parts.depth[index(pixel)]);
+        let same = value.attributes[..2] == alone.attributes[..2] && met == alone_met;
+        prop_assert!(
+            same,
+            "drawn whole or triangle by triangle: {:?} {:?}, {:?} {:?} at {:?}",
+            value,
+            met,
+            alone,
+            alone_met,
+            pixel
+        );
+        prop_assert!(!said.must() || met.times > 0, "{:?} is missing: {:?} {:?}", pixel, said, camera);
+        prop_assert!(
+            said.may || met.times == 0,
+            "{:?} is drawn {} times: {:?} {:?}",
+            pixel,
+            met.times,
+            said,
+            camera
+        );
+        if matches!(kind, Kind::Convex | Kind::Room | Kind::Plane) && met.times > 1 {
+            measured.turned_over += 1;
+            prop_assert!(said.thin, "{:?} is covered {} times: {:?} {:?}", pixel, met.times, said, camera);
+        }
+        seen |= met.times > 0;
+        measured.pixels += u64::from(met.times > 0);
+        measured.must += u64::from(said.must());
+        measured.must_not += u64::from(!said.may);
+        measured.thin += u64::from(said.thin);
+        if met.times > 0 {
+            let number = alone.attributes[2] as usize;
+            if let Some(triangle) = &snapped[number] {
+                whole(triangle, pixel, &alone, flight.exact, measured)?;
+            }
+            attribute(
+                &exact,
+                model,
+                number,
+                &facets[number],
+                pixel,
+                (&alone, met.q),
+                flight.exact,
+                measured,
+            )?;
+        }
+    }
+    measured.seen += u32::from(seen);
+
+    let closed = stats.clipped == 0 && matches!(kind, Kind::Convex | Kind::Room | Kind::Closed);
+    if closed || *kind == Kind::Plane {
+        let [fronts, backs] = [Cull::Back, Cull::Front]
+            .map(|cull| draw_all::<Q>(&camera, &mesh, &pose, cull, &mut Stats::default()));
+        for ((pixel, _, front), (_, _, back)) in fronts.iter().zip(backs.iter()) {
+            let said = said[index(pixel)];
+            let more = front.times.abs_diff(back.times);
+            if closed {
+                prop_assert!(more == 0, "{} fronts and {} backs at {:?}", front.times, back.times, pixel);
+            } else {
+                prop_assert!(
+                    !said.must() || more == 1,
+                    "{} fronts, {} backs at {:?}: {:?}",
+                    front.times,
+                    back.times,
+                    pixel,
+                    said
+                );
+                prop_assert!(said.may || more == 0);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A triangle that is not clipped as it stands on the screen, if there is no doubt where its corners go.
+fn snapped(exact: &View, model: &Model, facet: &Facet, corners: [u16; 3]) -> Option<Triangle> {
+    let within = facet.outline.len() == 3 && facet.outline.iter().all(|side| side.edge.is_some());
+    let corner = |i: u16| {
+        let vertex = &model.vertices[usize::from(i)];
+        let (at, w) = exact.screen(position(vertex))?;
+        let at = at.map(|at| at * 16.0);
+        let sure = at.iter().all(|at| (at - at.floor() - 0.5).abs() > DOUBT);
+        let [u, v] = texel(vertex).map(|texel| (texel * UNIT) as i32);
+        let q = (exact.q(w) * 2_f64.powi(31)).round().min(2_f64.powi(31) - 1.0) as u32;
+        let [x, y] = at.map(|at| at.round() as i32);
+        sure.then_some(Corner { x, y, q, attributes: [u, v, 0, 0, 0] })
+    };
+    let [a, b, c] = corners.map(|i| if within { corner(i) } else { None });
+    Some(Triangle([a?, b?, c?]))
+}
+
+/// Against the exact integer rasterizer.
+fn whole(
+    triangle: &Triangle,
+    pixel @ (x, y): (i32, i32),
+    drawn: &Drawn,
+    is_exact: bool,
+    measured: &mut Measured,
+) -> Result<(), TestCaseError> {
+    prop_assert!(triangle.covers(x, y), "{:?} is not of {:?}", pixel, triangle);
+    let here = triangle.at(x, y);
+    let (quality, bound) = if is_exact { (1, 0.02) } else { (0, 0.25) };
+    for axis in 0..2 {
+        let step = here.change(axis).step.max(UNIT);
+        let error = (f64::from(drawn.attributes[axis]) - here.attribute(axis)).abs() / step;
+        prop_assert!(
+            error <= bound,
+            "attribute {} is {} pixels off at {:?} of {:?}",
+            axis,
+            error,
+            pixel,
+            triangle
+        );
+        measured.whole[quality] = measured.whole[quality].max(error);
+    }
+    measured.wholes += 1;
+    Ok(())
+}
+
+#[expect(clippy::too_many_arguments, reason = "a step of `hold`")]
+fn attribute(
+    exact: &View,
+    model: &Model,
+    number: usize,
+    facet: &Facet,
+    pixel: (i32, i32),
+    (drawn, q): (&Drawn, u32),
+    is_exact: bool,
+    measured: &mut Measured,
+) -> Result<(), TestCaseError> {
+    let [x, y] = centre(pixel);
+    let corners = model.triangles[number].map(|i| texel(&model.vertices[usize::from(i)]));
+    for axis in 0..2 {
+        let at_corners = corners.map(|texel| texel[axis]);
+        let value = f64::from(drawn.attributes[axis]) / UNIT;
+        let (low, high) =
+            at_corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), at| (l.min(*at), h.max(*at)));
+        prop_assert!((low..=high).contains(&value), "{} is not of {:?} at {:?}", value, at_corners, pixel);
+    }
+    let Some(here) = facet.at([x, y]) else { return Ok(()) };
+    let square = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+    let square = square.map(|(dx, dy)| facet.at([x + dx * SNAPPING, y + dy * SNAPPING]));
+    // Where the plane vanishes, or so thin a triangle that it is seen from both sides at once.
+    let [Some(a), Some(b), Some(c), Some(d)] = square else { return Ok(()) };
+    if facet.thickness() < 1e-6 {
+        return Ok(());
+    }
+    let square = [here, a, b, c, d];
+    let neighbours: Vec<_> = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
+        .into_iter()
+        .filter_map(|(dx, dy)| facet.at([x + dx, y + dy]))
+        .collect();
+    let (quality, bound) = if is_exact { (1, 0.02) } else { (0, 0.25) };
+    let ends = |values: &dyn Fn(&reference::view::Hit) -> f64| {
+        square
+            .iter()
+            .map(values)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), at| (l.min(at), h.max(at)))
+    };
+    for axis in 0..2 {
+        let at_corners = corners.map(|texel| texel[axis]);
+        let value = f64::from(drawn.attributes[axis]) / UNIT;
+        let exact_value = here.of(at_corners);
+        let step =
+            neighbours.iter().map(|next| (next.of(at_corners) - exact_value).abs()).fold(1.0, f64::max);
+        let (low, high) = ends(&|hit| hit.of(at_corners));
+        let error = (low - value).max(value - high).max(0.0) / step;
+        prop_assert!(
+            error <= bound,
+            "attribute {} of triangle {} is {} at {:?}, not {} to {} (step {}): {} pixels off; w {}, ratio {}, {:?}",
+            axis,
+            number,
+            value,
+            pixel,
+            low,
+            high,
+            step,
+            error,
+            here.w,
+            facet.w_ratio(),
+            facet
+        );
+        measured.attribute[quality] = measured.attribute[quality].max(error);
+        measured.raw[quality] = measured.raw[quality].max((value - exact_value).abs() / step);
+        measured.attributes += 1;
+    }
+    let (low, high) = ends(&|hit| exact.q(hit.w));
+    let steps = |q: f64| q * 65536.0;
+    let q = f64::from(q) / 2_f64.powi(31);
+    let error = steps((low - q).max(q - high).max(0.0));
+    // q ends at 1.
+    let error = if low > 1.0 { error.min(steps((1.0 - q).abs())) } else { error };
+    prop_assert!(error <= 1.0, "q of triangle {} is {} at {:?}, not {} to {}", number, q, pixel, low, high);
+    measured.depth = measured.depth.max(error);
+    measured.ratio = measured.ratio.max(facet.w_ratio());
+    Ok(())
+}
+
+fn fly(scene: &Scene, views: u32) {
+    let measured = RefCell::new(Measured::default());
+    for_all(scene.name, views, flights(), |flight| {
+        let measured = &mut measured.borrow_mut();
+        if flight.exact {
+            hold::<Exact>(scene, &flight, measured)
+        } else {
+            hold::<QuarterPixel>(scene, &flight, measured)
+        }
+    });
+    let m = measured.into_inner();
+    println!(
+        "{}: {} views, {} with pixels, {} clipped; {} pixels, {} had to be, {} had not to be, {} near thin triangles, {} \
+         turned over; attributes of {} pixels off by {:.4} and exact ones by {:.4} ({:.3} and {:.3} with snapping), of {} \
+         in snapped triangles by {:.4} and {:.4}; depth by {:.3} steps, w to 1:{:.0}",
+        scene.name,
+        m.views,
+        m.seen,
+        m.clipped,
+        m.pixels,
+        m.must,
+        m.must_not,
+        m.thin,
+        m.turned_over,
+        m.attributes / 2,
+        m.attribute[0],
+        m.attribute[1],
+        m.raw[0],
+        m.raw[1],
+        m.wholes,
+        m.whole[0],
+        m.whole[1],
+        m.depth,
+        m.ratio
+    );
+    assert!(m.seen > m.views / 4 && m.clipped > m.views / 50, "not much was seen of {}", scene.name);
+}
+
+static BALL: Shape<162, 320> = icosphere(7.9, 4);
+static GLOBE: Shape<151, 224> = uv_sphere(7.9, 16, 8, [512, 256]);
+static CUBE: Shape<24, 12> = cube(15.0, [64, 64]);
+static GROUND: Shape<4, 2> = quad(15.625, 15.625, [2000, 2000]);
+static GRID: Shape<169, 288> = grid(15.0, 15.0, 12, 12, [1200, 1200]);
+static RING: Shape<192, 384> = torus(5.5, 2.0, 16, 12);
+
+#[test]
+fn a_convex_ball_from_2_500_viewpoints() {
+    fly(
+        &Scene { name: "icosphere", kind: Kind::Convex, model: Model::new(&BALL.mesh()), reach: [20.0; 3] },
+        2500,
+    );
+}
+
+#[test]
+fn a_globe_from_1_500_viewpoints() {
+    let model = Model::with_texels(GLOBE.mesh().vertices().to_vec(), GLOBE.mesh().triangles().collect());
+    fly(&Scene { name: "globe", kind: Kind::Convex, model, reach: [20.0; 3] }, 1500);
+}
+
+#[test]
+fn a_cube_from_1_500_viewpoints() {
+    fly(&Scene { name: "cube", kind: Kind::Convex, model: Model::new(&CUBE.mesh()), reach: [16.0; 3] }, 1500);
+}
+
+#[test]
+fn a_room_from_1_500_viewpoints_inside() {
+    fly(
+        &Scene {
+            name: "room",
+            kind: Kind::Room,
+            model: Model::new(&CUBE.mesh()).inside_out(),
+            reach: [7.4; 3],
+        },
+        1500,
+    );
+}
+
+#[test]
+fn a_ground_of_two_triangles_from_1_500_viewpoints() {
+    let model = Model::with_texels(GROUND.mesh().vertices().to_vec(), GROUND.mesh().triangles().collect());
+    fly(&Scene { name: "ground", kind: Kind::Plane, model, reach: [7.0, 7.0, 0.5] }, 1500);
+}
+
+#[test]
+fn a_plane_of_288_triangles_from_1_500_viewpoints() {
+    let model = Model::with_texels(GRID.mesh().vertices().to_vec(), GRID.mesh().triangles().collect());
+    fly(&Scene { name: "grid", kind: Kind::Plane, model, reach: [8.0, 8.0, 2.0] }, 1500);
+}
+
+#[test]
+fn a_torus_from_1_000_viewpoints() {
+    fly(
+        &Scene { name: "torus", kind: Kind::Closed, model: Model::new(&RING.mesh()), reach: [12.0; 3] },
+        1000,
+    );
+}
+
+/// The teapot is 15 units long, and smaller in its mesh.
+fn teapot() -> Model {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/assets/teapot.obj");
+    let (models, _) = tobj::load_obj(path, &tobj::GPU_LOAD_OPTIONS).expect("the teapot is there");
+    let mesh = &models.first().expect("one mesh").mesh;
+    let (places, _) = mesh.positions.as_chunks::<3>();
+    let most = mesh.positions.iter().fold(0.0_f32, |most, at| most.max(at.abs()));
+    let vertices: Vec<_> = places
+        .iter()
+        .map(|place| place.map(|at| at * 7.9 / most))
+        .map(|[x, y, z]| Vertex::new(x, y, z))
+        .collect();
+    let (triangles, _) = mesh.indices.as_chunks::<3>();
+    let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(|index| index as u16)).collect();
+    Model::new(&Mesh::try_new(&vertices, &triangles).expect("the indices are in range"))
+}
+
+#[test]
+fn the_teapot_from_600_viewpoints() {
+    fly(&Scene { name: "teapot", kind: Kind::Any, model: teapot(), reach: [14.0; 3] }, 600);
+}
