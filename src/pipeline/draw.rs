@@ -12,8 +12,8 @@ use crate::scene::{Mesh, Projection, Vertex};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use core::fmt;
 
-/// How many screen vertices are kept, by the low bits of their index: neighbours in a mesh share most of theirs. (Clipping
-/// borrows the memory for the corners of a polygon.)
+/// How many screen vertices are kept, the oldest making room for the newest: neighbours in a mesh share most of theirs.
+/// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
 const NOBODY: u32 = u32::MAX;
 
@@ -42,12 +42,12 @@ pub(crate) fn draw<F, D, S>(
     let coloring = shader.coloring(pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache = [ScreenVertex::default(); MOST_CORNERS];
-    let mut owners = [NOBODY; CACHED];
+    let (mut owners, mut oldest) = ([NOBODY; CACHED], 0);
     let straight = if projection.orthographic { NO_PERSPECTIVE } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
         let mut triangle = [ScreenVertex::default(); 3];
-        let inside = placer.place(indices, &mut cache, &mut owners, &mut triangle, stats);
+        let inside = placer.place(indices, &mut cache, &mut owners, &mut oldest, &mut triangle, stats);
         let pieces = if inside { 1 } else { placer.cut(indices, &mut cache, &mut owners, stats) };
         for piece in 0..pieces {
             if !inside {
@@ -78,20 +78,27 @@ impl Placer<'_> {
         indices: [u16; 3],
         cache: &mut [ScreenVertex; MOST_CORNERS],
         owners: &mut [u32; CACHED],
+        oldest: &mut usize,
         triangle: &mut [ScreenVertex; 3],
         stats: &mut impl Count,
     ) -> bool {
         for (index, to) in indices.iter().zip(triangle) {
-            let slot = usize::from(*index) % CACHED;
-            if owners[slot] != u32::from(*index) {
-                stats.count(|stats| &mut stats.transformed);
-                owners[slot] = NOBODY;
-                let vertex = self.mesh.vertex(*index);
-                if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache[slot]) {
-                    return false;
+            let index = u32::from(*index);
+            let slot = match owners.iter().position(|owner| *owner == index) {
+                Some(slot) => slot,
+                None => {
+                    stats.count(|stats| &mut stats.transformed);
+                    let slot = *oldest % CACHED;
+                    owners[slot] = NOBODY;
+                    let vertex = self.mesh.vertex(index as u16);
+                    if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache[slot]) {
+                        return false;
+                    }
+                    owners[slot] = index;
+                    *oldest = slot + 1;
+                    slot
                 }
-                owners[slot] = u32::from(*index);
-            }
+            };
             *to = cache[slot];
         }
         true

@@ -71,6 +71,10 @@ impl ToClip {
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
         let unit_bits = (59 - bits(&translation)).min(fraction_bits - 5).min(28);
+        // Without perspective depth reaches from plane to plane: the far one has to be among the clip coordinates.
+        let far_bits =
+            if projection.orthographic { 15 + projection.far.to_bits().leading_zeros() as i32 } else { 28 };
+        let unit_bits = unit_bits.min(far_bits);
         let to_i32 = |value, shift: i32| {
             (if shift >= 0 { shift_round(value, shift.min(63) as u32) } else { value << -shift.max(-63) })
                 as i32

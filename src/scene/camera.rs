@@ -157,18 +157,17 @@ impl Camera {
     /// to the right and with pitch upwards.
     #[must_use]
     pub fn orbit(mut self, target: Vec3, distance: I16F16, yaw: Turn, pitch: Turn) -> Self {
-        let rotation = Pose::IDENTITY.rotated_x(-pitch).rotated_y(yaw).rotation;
-        self.pose.rotation = rotation;
-        self.pose.translation = target + along(&rotation, [0, 0, distance.to_bits()]);
+        self.pose.rotation = Pose::IDENTITY.rotated_x(-pitch).rotated_y(yaw).rotation;
+        self.pose.translation = target;
+        self.pose.translation = moved(&self.pose, [0, 0, distance.to_bits().into()]);
         self
     }
 
     /// The same, flown by so much to the right, upwards and forwards as it is turned now.
     #[must_use]
     pub fn flown(mut self, right: I16F16, up: I16F16, forward: I16F16) -> Self {
-        let back = forward.to_bits().saturating_neg();
-        let step = along(&self.pose.rotation, [right.to_bits(), up.to_bits(), back]);
-        self.pose.translation = self.pose.translation + step;
+        let step = [right.to_bits().into(), up.to_bits().into(), -i64::from(forward.to_bits())];
+        self.pose.translation = moved(&self.pose, step);
         self
     }
 
@@ -190,6 +189,12 @@ impl Camera {
     #[must_use]
     pub const fn focal_length(&self) -> I16F16 {
         self.projection.focal
+    }
+
+    /// Whether the camera is without perspective.
+    #[must_use]
+    pub const fn is_orthographic(&self) -> bool {
+        self.projection.orthographic
     }
 
     /// The distances of the near and the far plane; a perspective camera without a far plane has `I16F16::MAX`.
@@ -222,18 +227,21 @@ impl Camera {
         let offset = |at: I12F4, axis: usize| {
             let pixels = i64::from(at.to_bits()) - i64::from(projection.center[axis]); // 1/16 px
             let depth = if projection.orthographic { 1 << 16 } else { i64::from(distance.to_bits()) };
-            let eye = ((pixels * depth) << 12) / focal;
-            eye.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+            // Far beyond the world's ends, but sums of three still fit.
+            (((pixels * depth) << 12) / focal).clamp(-1 << 46, 1 << 46)
         };
-        let eye = [offset(x, 0), offset(y, 1).saturating_neg(), distance.to_bits().saturating_neg()];
-        self.pose.translation + along(&self.pose.rotation, eye)
+        moved(&self.pose, [offset(x, 0), -offset(y, 1), -i64::from(distance.to_bits())])
     }
 
     /// Draws a mesh, standing as `pose` says, into a band.
     ///
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
-    /// away are culled as the shader says. Whatever the numbers, it draws or leaves out, and
-    /// never fails.
+    /// away are culled as the shader says.
+    ///
+    /// Whatever the numbers, it draws or leaves out, and never fails: coordinates at the ends of every format, vertices
+    /// that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a near plane at
+    /// 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
+    /// left out is what [`Stats`] counts.
     pub fn draw<F, D, S>(&self, mesh: &Mesh<'_>, pose: &Pose, shader: &S, band: &mut Band<'_, F, D>)
     where
         F: PixelFormat,
@@ -260,13 +268,14 @@ impl Camera {
     }
 }
 
-/// Eye space to a direction in the world, saturated.
-fn along(rotation: &[[I2F14; 3]; 3], eye: [i32; 3]) -> Vec3 {
-    let [x, y, z] = rotation.map(|row| {
-        let sum: i64 = row.iter().zip(eye).map(|(r, e)| i64::from(r.to_bits()) * i64::from(e)).sum();
-        I16F16::from_bits(((sum + (1 << 13)) >> 14).clamp(i32::MIN.into(), i32::MAX.into()) as i32)
-    });
-    Vec3::new(x, y, z)
+/// The point of the world at a place in the space of an eye (within ±2⁴⁶, I16F16), saturated at the world's ends.
+fn moved(pose: &Pose, eye: [i64; 3]) -> Vec3 {
+    let along = |axis: usize| {
+        let sum: i64 = pose.rotation[axis].iter().zip(eye).map(|(r, e)| i64::from(r.to_bits()) * e).sum();
+        let at = ((sum + (1 << 13)) >> 14) + i64::from(pose.translation.bits()[axis]);
+        I16F16::from_bits(at.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    };
+    Vec3::new(along(0), along(1), along(2))
 }
 
 const fn difference(a: [i32; 3], b: [i32; 3]) -> [i64; 3] {
