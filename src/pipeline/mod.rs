@@ -5,6 +5,7 @@
 //! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
 //! ```
 
+mod attribute;
 mod clip;
 mod color;
 mod draw;

@@ -13,9 +13,10 @@
 //! 3/16 of a pixel and leaves 1/16 to rounding: **L² ≤ ¾·q/|q′|**. So floors seen level and walls seen
 //! straight (q′ ≈ 0) are one affine run, and a strongly foreshortened wall divides every few pixels.
 
+use super::attribute::{Attribute, inverse};
 use super::color::Coloring;
 use super::fill::{Each, Fill};
-use super::setup::{Attribute, Cull, inverse};
+use super::setup::Cull;
 use super::span::Span;
 use crate::math::Pose;
 use crate::math::recip::Reciprocal;

@@ -32,6 +32,8 @@ pub struct Span<'a> {
     pub(super) y: i32,
 }
 
+const _: () = assert!(size_of::<Span<'_>>() == size_of::<usize>() + 8);
+
 impl<'a> Span<'a> {
     pub(crate) fn new(setup: &'a TriangleSetup, x: i32, y: i32) -> Self {
         Self { setup, x, y }

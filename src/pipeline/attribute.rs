@@ -1,0 +1,82 @@
+//! One attribute over a triangle, between [set-up](super::setup) and [shading](super::shade).
+
+use super::setup::Plane;
+use crate::math::recip::Reciprocal;
+use crate::num::wide;
+
+/// (u − u₀)·q, and the way back to u.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Attribute {
+    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle, u − u₀ in I16F16.
+    pub(super) plane: Plane,
+    pub(super) exponent: i32,
+    /// u₀, I16F16.
+    pub(super) base: i32,
+    /// The range of u − u₀ at the corners, I16F16.
+    pub(super) low: i32,
+    pub(super) high: i32,
+    /// What comes out is times 2^this, modulo 2³².
+    pub(super) scale_log2: u32,
+}
+
+impl Attribute {
+    /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
+    #[inline]
+    pub(super) fn resolve(&self, value: i32, q: Reciprocal) -> i32 {
+        let product = ((wide(value, q.mantissa) + (1 << 31)) >> 32) as i32; // below 2³⁰
+        let exponent = self.exponent + q.zeros as i32 - 30;
+        let offset = if exponent < 0 {
+            let shift = (-exponent).min(31) as u32;
+            ((product >> (shift - 1)) + 1) >> 1
+        } else {
+            let exponent = exponent.min(31);
+            product.clamp(self.low >> exponent, self.high >> exponent) << exponent
+        };
+        self.finish(offset)
+    }
+
+    /// The attribute in I16F16 from u − u₀.
+    #[inline]
+    fn finish(&self, offset: i32) -> i32 {
+        (self.base + offset.clamp(self.low, self.high)) << self.scale_log2
+    }
+
+    /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
+    /// outside the corners' range, even where rounding takes the plane there.
+    #[inline]
+    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let (first, last) = (value as i32, (value as i32).wrapping_add(step.wrapping_mul(steps)));
+        let range = self.low..=self.high;
+        if range.contains(&first) && range.contains(&last) {
+            return ((self.base + first) << self.scale_log2, step << self.scale_log2);
+        }
+        self.along_border(first, last, steps)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+        let rise = last.clamp(self.low, self.high) - first.clamp(self.low, self.high);
+        let step = wide(rise.wrapping_abs(), inverse(steps.max(1) as usize)) >> 31;
+        let step = if rise < 0 { -(step as i32) } else { step as i32 };
+        (self.finish(first), step << self.scale_log2)
+    }
+}
+
+/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
+#[inline]
+pub(super) fn inverse(steps: usize) -> i32 {
+    static TABLE: [i32; 32] = {
+        let mut table = [i32::MAX; 32];
+        let mut i = 1;
+        while i < 32 {
+            table[i] = i32::MAX / i as i32;
+            i += 1;
+        }
+        table
+    };
+    TABLE.get(steps).copied().unwrap_or_else(|| {
+        let reciprocal = Reciprocal::coarse(steps as u32);
+        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
+    })
+}
