@@ -41,6 +41,20 @@ impl Picture {
         Ok(picture)
     }
 
+    /// The picture turned by a quarter; it has to be square.
+    #[allow(dead_code, reason = "not every example turns pictures")]
+    pub fn turned(mut self) -> Result<Self, Box<dyn Error>> {
+        if self.log2_width != self.log2_height {
+            return Err("only a square picture can be turned".into());
+        }
+        let side = 1 << self.log2_width;
+        let texels = self.texels.clone();
+        for (i, texel) in texels.into_iter().enumerate() {
+            self.texels[i % side * side + i / side] = texel;
+        }
+        Ok(self)
+    }
+
     /// The texture that borrows it.
     pub fn texture(&self) -> Result<Texture<'_>, fixel::TextureError> {
         Texture::try_new(&self.texels, self.log2_width, self.log2_height)
