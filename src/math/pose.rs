@@ -24,7 +24,7 @@ use core::ops::Mul;
 pub struct Pose {
     /// Rows of the rotation matrix.
     pub rotation: [[I2F14; 3]; 3],
-    /// The size of one mesh unit in the world.
+    /// The size of one mesh unit in the world: 10⁻³ has 12 significant bits, 1 has 22, 10³ has 32.
     pub scale: U10F22,
     /// Where the origin of the mesh goes.
     pub translation: Vec3,

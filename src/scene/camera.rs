@@ -238,6 +238,10 @@ impl Camera {
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
     /// away are culled as the shader says.
     ///
+    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px; before rounding it is
+    /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
+    /// 10³ and at any distance from the world's origin.
+    ///
     /// Whatever the numbers, it draws or leaves out, and never fails: coordinates at the ends of every format, vertices
     /// that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a near plane at
     /// 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
