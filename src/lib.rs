@@ -9,7 +9,7 @@
 //! | facing | counter-clockwise on the screen is the front; [`Cull`] leaves out backs (default), fronts, or none |
 //! | positions | snapped to 1/16 pixel; no vertex is rounded to whole pixels, anywhere |
 //! | coverage | top-left rule, exact: of the triangles that share an edge or a vertex exactly one covers a pixel centre that lies on it. No cracks, no double pixels, also after clipping |
-//! | perspective | [`QuarterPixel`], the default: every attribute is within ¼ pixel of exact, that is, its error divided by its largest exact change over one pixel step in x or y (or by 1 texel, or 1/255, if that is more). [`Exact`]: within 0.02 (within 0.05 where the distances of a triangle's corners differ more than 4096-fold, up to 65536-fold). [`Affine`]: unbounded. No attribute leaves the range of its triangle's three vertices |
+//! | perspective | [`QuarterPixel`], the default: every attribute is within ¼ pixel of exact, that is, its error divided by its largest exact change over one pixel step in x or y (or by 1 texel, or 1/255, if that is more). [`Exact`]: within 0.02. [`Affine`]: unbounded. No attribute leaves the range of its triangle's three vertices |
 //! | depth | 16-bit near/w, 1 … 65535, 0 is cleared; larger is nearer, strictly nearer wins, ties keep what was drawn first |
 //! | determinism | the same bytes on every machine and for every band height |
 //! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |

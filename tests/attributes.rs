@@ -209,8 +209,6 @@ fn hold<Q: Quality>(name: &str, bound: f64) {
     for family in FAMILIES {
         let mut line = format!("{:10}", format!("{family:?}"));
         for (ratio, total) in RATIOS.into_iter().zip(&mut by_ratio) {
-            // Where the farthest corner's q has less than 20 of 31 bits, its last bit alone can be 0.03 pixel.
-            let bound = if ratio > 4096 { bound.max(0.05) } else { bound };
             let worst = RefCell::new((Worst::default(), None));
             let label = format!("{name}, {family:?}, w 1 … {ratio}");
             let run = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {

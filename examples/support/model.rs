@@ -27,6 +27,9 @@ impl Model {
             return Err(in_file(&format!("{} coordinates", mesh.positions.len())).into());
         }
         let (faces, _) = mesh.indices.as_chunks::<3>();
+        if faces.is_empty() || !points.as_flattened().iter().all(|coordinate| coordinate.is_finite()) {
+            return Err(in_file(&"no triangles, or coordinates that are no numbers").into());
+        }
         let corner = |index: u32| points.get(index as usize).copied();
         let (mut low, mut high) = ([f32::MAX; 3], [f32::MIN; 3]);
         for point in points {

@@ -7,7 +7,8 @@ use crate::num::wide;
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle, u − u₀ in I16F16.
+    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle or a sliver,
+    /// u − u₀ in I16F16.
     pub(super) plane: Plane,
     pub(super) exponent: i32,
     /// u₀, I16F16.
@@ -37,7 +38,7 @@ impl Attribute {
 
     /// The attribute in I16F16 from u − u₀.
     #[inline]
-    fn finish(&self, offset: i32) -> i32 {
+    pub(super) fn finish(&self, offset: i32) -> i32 {
         (self.base + offset.clamp(self.low, self.high)) << self.scale_log2
     }
 

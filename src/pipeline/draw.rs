@@ -198,7 +198,16 @@ fn draw_checked<F, D, S>(
     stats.count(|stats| &mut stats.drawn);
     let mut setup = TriangleSetup::new(&triangle);
     let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set_planes(&triangle, &Needs { inputs, straight, texture_scale, depth: !D::ALWAYS_PASSES });
+    setup.set_planes(
+        &triangle,
+        &Needs {
+            inputs,
+            straight,
+            every_pixel: S::Quality::EVERY_PIXEL,
+            texture_scale,
+            depth: !D::ALWAYS_PASSES,
+        },
+    );
     band.draw(&setup, window, shader);
 }
 

@@ -29,8 +29,9 @@
 //! from where the screen begins, if it lies outside). With n, m ≤ 1023 and d ≤ 2047 the sum of all is 0.024 px in the very
 //! worst case for any ratio of w, and measured a tenth of it.
 //!
-//! In a sliver the steps are large and nearly cancel. Then a plane holds the values at the corners instead, and
-//! is evaluated by weights from the exact edge functions, which never cancel: slower, rare, and out of line.
+//! In a sliver the steps are large and nearly cancel, and where distances differ more than 4096-fold q has too few bits at
+//! the far corner for [`Exact`](super::Exact). Then a plane holds the values at the corners instead, and attributes are
+//! mixed at every pixel by weights from the exact products of edge functions and q: slower, rare, and out of line.
 
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
@@ -60,8 +61,8 @@ pub(crate) struct TriangleSetup {
     pub(super) corners: [[i32; 2]; 3],
     /// 1 / (twice the area in 1/256 px²).
     area: Reciprocal,
-    /// Whether planes hold values at corners.
-    sliver: bool,
+    /// Whether planes hold values at corners: a sliver, or of very different distances.
+    pub(super) sliver: bool,
     /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
     pub(super) straight: bool,
     /// near/w with 31 fraction bits; for depth.
@@ -105,6 +106,8 @@ pub(super) struct Needs {
     /// How nearly the same q has to be at the corners for attributes to count as linear: see
     /// [`Quality::STRAIGHT`](super::shade::Quality::STRAIGHT).
     pub(super) straight: (u32, u32),
+    /// Whether it divides at every pixel.
+    pub(super) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(super) texture_scale: u32,
     /// Whether depth is tested.
@@ -160,10 +163,16 @@ impl TriangleSetup {
 
     #[inline(never)]
     pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let Needs { inputs, straight, texture_scale, depth } = *needs;
+        let Needs { inputs, straight, every_pixel, texture_scale, depth } = *needs;
         let vertices = triangle.vertices;
         let slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
+        // The nearest corner gets all 31 bits.
+        let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
+        let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
+        self.q_min = q[1].min(q[2]);
+        // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
+        self.sliver |= every_pixel && self.q_min < 1 << 19 && straight.1 > 0;
         if depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
             // for that.
@@ -173,10 +182,6 @@ impl TriangleSetup {
         if inputs == Inputs::None {
             return;
         }
-        // The nearest corner gets all 31 bits.
-        let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
-        let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
-        self.q_min = q[1].min(q[2]);
         // (width + height)·(q_max − q_min) ≤ straight · q_min, in 1/16 px.
         let extent = slopes.extent * straight.1;
         self.straight = extent == 0
@@ -237,6 +242,38 @@ impl TriangleSetup {
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
         let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
         (value, if sum < 0 { -step } else { step })
+    }
+
+    /// The first `N` attributes of a sliver at a pixel's centre, I16F16, with weights edge function · q / sum of both
+    /// at each corner: exact products, divided to 30 bits.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn resolve_in_sliver<const N: usize>(
+        &self,
+        attributes: &[Attribute; N],
+        x: i32,
+        y: i32,
+    ) -> [i32; N] {
+        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
+        let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
+        let (b, c) = ((ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px);
+        let a = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) - b - c;
+        let q = |rise: i32| self.q.origin.wrapping_add_signed(rise) as i32;
+        // Together at most area · 2³¹.
+        let (b, c) = (wide(b, q(self.q.steps[0])), wide(c, q(self.q.steps[1])));
+        let sum = (wide(a, q(0)) + b + c).max(1);
+        // Their upper 31 bits.
+        let excess = 33 - sum.leading_zeros() as i32;
+        let upper = |product: i64| (if excess >= 0 { product >> excess } else { product << -excess }) as i32;
+        let reciprocal = Reciprocal::precise(upper(sum) as u32);
+        let weights = [b, c].map(|product| {
+            let weight = wide(upper(product), reciprocal.mantissa) >> 30;
+            weight.min(i64::from(i32::MAX)) as i32
+        });
+        attributes.each_ref().map(|attribute| {
+            let [b, c] = attribute.plane.steps;
+            attribute.finish(mul_round::<31>(weights[0], b) + mul_round::<31>(weights[1], c))
+        })
     }
 
     /// Finds out whether it is a sliver, too.
@@ -313,7 +350,7 @@ impl TriangleSetup {
             high: rise[0].max(rise[1]).max(0),
             scale_log2: 0,
         };
-        if self.straight {
+        if self.straight || self.sliver {
             attribute.plane = self.plane(slopes, 0, rise);
             return attribute;
         }

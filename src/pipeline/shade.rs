@@ -274,6 +274,12 @@ impl Span<'_> {
             }
             return fill.run_long(pixels, at, step);
         }
+        if setup.sliver {
+            for (x, pixel) in (self.x..).zip(pixels) {
+                *pixel = fill.pixel(setup.resolve_in_sliver(attributes, x, self.y));
+            }
+            return;
+        }
         let (q, q_step) = setup.at(&setup.q, self.x, self.y);
         let mut place =
             Place { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
