@@ -7,7 +7,7 @@ use crate::num::wide;
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle or a sliver,
+    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle or a sliver in `Exact`,
     /// u − u₀ in I16F16.
     pub(super) plane: Plane,
     pub(super) exponent: i32,

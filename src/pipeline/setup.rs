@@ -30,8 +30,9 @@
 //! worst case for any ratio of w, and measured a tenth of it.
 //!
 //! In a sliver the steps are large and nearly cancel, and where distances differ more than 4096-fold q has too few bits at
-//! the far corner for [`Exact`](super::Exact). Then a plane holds the values at the corners instead, and attributes are
-//! mixed at every pixel by weights from the exact products of edge functions and q: slower, rare, and out of line.
+//! the far corner for [`Exact`](super::Exact). Then a plane holds the values at the corners instead, and is
+//! evaluated by weights from the exact edge functions, which never cancel; `Exact` mixes attributes at every pixel, by weights
+//! from the exact products of edge functions and q. Both are slower, rare, and out of line.
 
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
@@ -191,9 +192,12 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
 
+        let mixed = self.sliver && every_pixel;
         let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            self.attributes[0] = self.attribute(&slopes, vertices.map(|vertex| vertex.u.to_bits()), &q);
-            self.attributes[1] = self.attribute(&slopes, vertices.map(|vertex| vertex.v.to_bits()), &q);
+            self.attributes[0] =
+                self.attribute(&slopes, vertices.map(|vertex| vertex.u.to_bits()), &q, mixed);
+            self.attributes[1] =
+                self.attribute(&slopes, vertices.map(|vertex| vertex.v.to_bits()), &q, mixed);
             self.attributes[0].scale_log2 = texture_scale;
             self.attributes[1].scale_log2 = texture_scale;
             2
@@ -203,7 +207,7 @@ impl TriangleSetup {
         if matches!(inputs, Inputs::Color | Inputs::UvColor) {
             for channel in 0..3 {
                 let at = vertices.map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8);
-                self.attributes[colors + channel] = self.attribute(&slopes, at, &q);
+                self.attributes[colors + channel] = self.attribute(&slopes, at, &q, mixed);
             }
         }
     }
@@ -338,9 +342,10 @@ impl TriangleSetup {
         plane
     }
 
-    /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there.
+    /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there; `mixed` for
+    /// [`resolve_in_sliver`](Self::resolve_in_sliver).
     #[inline(never)]
-    fn attribute(&self, slopes: &Slopes, at: [i32; 3], q: &[u32; 3]) -> Attribute {
+    fn attribute(&self, slopes: &Slopes, at: [i32; 3], q: &[u32; 3], mixed: bool) -> Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let mut attribute = Attribute {
             plane: Plane::default(),
@@ -350,7 +355,7 @@ impl TriangleSetup {
             high: rise[0].max(rise[1]).max(0),
             scale_log2: 0,
         };
-        if self.straight || self.sliver {
+        if self.straight || mixed {
             attribute.plane = self.plane(slopes, 0, rise);
             return attribute;
         }

@@ -274,7 +274,7 @@ impl Span<'_> {
             }
             return fill.run_long(pixels, at, step);
         }
-        if setup.sliver {
+        if Q::EVERY_PIXEL && setup.sliver {
             for (x, pixel) in (self.x..).zip(pixels) {
                 *pixel = fill.pixel(setup.resolve_in_sliver(attributes, x, self.y));
             }
