@@ -58,9 +58,7 @@ impl Attribute {
     #[inline(never)]
     fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
         let rise = last.clamp(self.low, self.high) - first.clamp(self.low, self.high);
-        let step = wide(rise.wrapping_abs(), inverse(steps.max(1) as usize)) >> 31;
-        let step = if rise < 0 { -(step as i32) } else { step as i32 };
-        (self.finish(first), step << self.scale_log2)
+        (self.finish(first), step_of(rise, inverse(steps.max(1) as usize)) << self.scale_log2)
     }
 }
 
@@ -80,4 +78,11 @@ pub(super) fn inverse(steps: usize) -> i32 {
         let reciprocal = Reciprocal::coarse(steps as u32);
         (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
     })
+}
+
+/// `rise` in as many steps as [`inverse`] was asked for, cut towards zero.
+#[inline]
+pub(super) fn step_of(rise: i32, inverse: i32) -> i32 {
+    let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
+    if rise < 0 { -size } else { size }
 }

@@ -13,7 +13,7 @@
 //! 3/16 of a pixel and leaves 1/16 to rounding: **L² ≤ ¾·q/|q′|**. So floors seen level and walls seen
 //! straight (q′ ≈ 0) are one affine run, and a strongly foreshortened wall divides every few pixels.
 
-use super::attribute::{Attribute, inverse};
+use super::attribute::{Attribute, inverse, step_of};
 use super::color::Coloring;
 use super::fill::{Each, Fill};
 use super::setup::Cull;
@@ -220,11 +220,7 @@ impl<const N: usize> Place<'_, N> {
         self.advance(count as i32 - 1);
         let last = self.resolve();
         let inverse = inverse(count - 1);
-        core::array::from_fn(|i| {
-            let rise = last[i].wrapping_sub(at[i]);
-            let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
-            if rise < 0 { -size } else { size }
-        })
+        core::array::from_fn(|i| step_of(last[i].wrapping_sub(at[i]), inverse))
     }
 
     /// Whether linear attributes over this many pixels from here are exact enough: L² ≤ ¾·q/|q′|, where q is least.

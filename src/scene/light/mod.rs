@@ -7,7 +7,7 @@
 mod normal;
 
 use crate::math::recip::Reciprocal;
-use crate::math::{Pose, Vec3};
+use crate::math::{Pose, Vec3, normalized};
 use crate::num::{I4F12, I16F16, U8F8, wide};
 use core::{array, fmt, num::NonZeroU16};
 use heapless::Vec;
@@ -57,29 +57,11 @@ impl Light {
 }
 
 /// The opposite of a direction as a unit vector of 30 fraction bits; 0 for 0.
-const fn towards(direction: [i32; 3]) -> [i32; 3] {
-    let [x, y, z] = direction;
-    let largest = x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs();
-    if largest == 0 {
-        return [0; 3];
+const fn towards([x, y, z]: [i32; 3]) -> [i32; 3] {
+    match normalized([-(x as i64), -(y as i64), -(z as i64)]) {
+        Some(unit) => unit,
+        None => [0; 3],
     }
-    // 2³¹ … 2³² − 1 over 2: the sum of three squares of at most 2³¹ fits a u64.
-    let mut unit = [0; 3];
-    let mut squares = 0u64;
-    let mut i = 0;
-    while i < 3 {
-        let component = (direction[i] as i64) << largest.leading_zeros() >> 1;
-        squares += (component * component) as u64;
-        i += 1;
-    }
-    let length = squares.isqrt() as i64;
-    i = 0;
-    while i < 3 {
-        let component = (direction[i] as i64) << largest.leading_zeros() >> 1;
-        unit[i] = (-(component << 30) / length) as i32;
-        i += 1;
-    }
-    unit
 }
 
 /// The lights of a scene: one that is everywhere, and at most [`Lights::MAX`] that shine from somewhere.
