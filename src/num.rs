@@ -46,6 +46,51 @@ const fn wide_split(a: i32, b: i32) -> i64 {
     ((high as i64) << 32) | low as i64
 }
 
+/// `a · b / 2¹⁶` rounded down, for a `b` of 0 … 2¹⁶: two short products on Armv6-M.
+#[inline]
+pub(crate) const fn mul_16(a: i32, b: u32) -> i32 {
+    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+        mul_16_split(a, b)
+    } else {
+        ((a as i64 * b as i64) >> 16) as i32
+    }
+}
+
+#[inline]
+const fn mul_16_split(a: i32, b: u32) -> i32 {
+    (a >> 16) * b as i32 + (((a as u32 & 0xffff) * b) >> 16) as i32
+}
+
+/// `a · b / 2¹⁶` rounded down, for a `b` of −2¹⁵ … 2¹⁵ − 1: likewise. Beyond that some number.
+#[inline]
+pub(crate) const fn mul_16_signed(a: i32, b: i32) -> i32 {
+    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+        mul_16_signed_split(a, b as i16 as i32)
+    } else {
+        ((a as i64 * b as i16 as i64) >> 16) as i32
+    }
+}
+
+#[inline]
+const fn mul_16_signed_split(a: i32, b: i32) -> i32 {
+    (a >> 16) * b + (((a & 0xffff) * b) >> 16)
+}
+
+/// `a · b / 2¹⁶` rounded down, for an even part of `a` within ±2³⁰ and a `b` of 0 … 2¹⁷: likewise.
+#[inline]
+pub(crate) const fn mul_17(a: i32, b: u32) -> i32 {
+    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+        mul_17_split(a, b)
+    } else {
+        (((a & !1) as i64 * b as i64) >> 16) as i32
+    }
+}
+
+#[inline]
+const fn mul_17_split(a: i32, b: u32) -> i32 {
+    (a >> 16) * b as i32 + ((((a as u32 & 0xffff) >> 1) * b) >> 15) as i32
+}
+
 /// `a · b / 2^S`, rounded to nearest, halves up; the low 32 bits of it.
 #[inline]
 pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
@@ -140,6 +185,29 @@ mod tests {
         #[test]
         fn shifting_the_upper_half_is_shifting_the_whole_in_100_000_cases(a: i32, b: i32, shift in 0u32..64) {
             prop_assert_eq!(mul_shift_round(a, b, shift), shift_round(wide(a, b), shift));
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn short_split_multiplies_are_the_widening_ones_in_100_000_cases(a: i32, b in 0u32..=1 << 17) {
+            let exactly = |a: i32, b: i64| (i64::from(a) * b) >> 16;
+            for a in [a, i32::MIN, i32::MAX, a >> 16] {
+                for b in [b >> 1, 1 << 16, 0xffff] {
+                    prop_assert_eq!(i64::from(mul_16_split(a, b)), exactly(a, b.into()));
+                    let signed = b as i32 - (1 << 15);
+                    if signed < 1 << 15 {
+                        prop_assert_eq!(i64::from(mul_16_signed_split(a, signed)), exactly(a, signed.into()));
+                        prop_assert_eq!(i64::from(mul_16_signed(a, signed)), exactly(a, signed.into()));
+                    }
+                }
+            }
+            for a in [a >> 1, -1 << 30, (1 << 30) - 1, a >> 16] {
+                for b in [b, (1 << 17) - 1, 0xffff] {
+                    prop_assert_eq!(i64::from(mul_17_split(a, b)), exactly(a & !1, b.into()));
+                }
+            }
         }
     }
 

@@ -44,33 +44,19 @@ impl Reciprocal {
         Self::normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
     }
 
-    /// As [`Reciprocal::coarse`], for a divisor that has about as many leading zeros as the last one: Armv6-M has no
-    /// instruction that counts them, and the library routine takes 45 cycles.
+    /// As [`Reciprocal::coarse`], for a divisor that has about `zeros` leading zeros.
     #[inline]
     pub(crate) fn coarse_near(divisor: u32, zeros: u32) -> Self {
-        if cfg!(not(all(target_arch = "arm", not(target_has_atomic = "32")))) {
-            return Self::coarse(divisor);
-        }
         let divisor = divisor.max(1);
-        let mut zeros = zeros;
-        while zeros > 0 && divisor >> (32 - zeros) != 0 {
-            zeros -= 1;
-        }
-        while ((divisor << zeros) as i32) > 0 {
-            zeros += 1;
-        }
+        let zeros = zeros_near(divisor, zeros);
         Self::normalised(divisor << zeros, zeros)
     }
 
     /// From the mantissa `m`, 2³¹ … 2³² − 1.
     #[inline]
     fn normalised(m: u32, zeros: u32) -> Self {
-        let i = (m >> 22) as usize & (INTERVALS - 1);
-        let (left, right) = (TABLE[i], TABLE[i + 1]);
-        // 17 bits × 15 bits.
-        let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
         // 2³¹ itself, for powers of two, is one too many for an i32.
-        Self { mantissa: (left - fall).min(i32::MAX as u32) as i32, zeros }
+        Self { mantissa: looked_up(m).min(i32::MAX as u32) as i32, zeros }
     }
 
     /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors
@@ -103,6 +89,53 @@ impl Reciprocal {
         }
         (quotient, remainder)
     }
+}
+
+/// 2⁶²/m for m = 2³¹ … 2³² − 1.
+#[inline]
+fn looked_up(m: u32) -> u32 {
+    let i = (m >> 22) as usize & (INTERVALS - 1);
+    let (left, right) = (TABLE[i], TABLE[i + 1]);
+    // 17 bits × 15 bits.
+    let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
+    left - fall
+}
+
+/// 1/d in 18 bits, for short products: 1/d = `mantissa` · 2^(`zeros` − 48).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShortReciprocal {
+    /// 2¹⁶ … 2¹⁷ − 1, rounded: a relative error of 2⁻¹⁷ and that of the table.
+    pub(crate) mantissa: u32,
+    /// Leading zeros of the divisor, 0 … 31.
+    pub(crate) zeros: u32,
+}
+
+impl ShortReciprocal {
+    /// For a divisor that has about `zeros` leading zeros; 0 counts as 1.
+    #[inline]
+    pub(crate) fn near(divisor: u32, zeros: u32) -> Self {
+        let divisor = divisor.max(1);
+        let zeros = zeros_near(divisor, zeros);
+        let mantissa = (looked_up(divisor << zeros) + (1 << 13)) >> 14;
+        Self { mantissa: mantissa.min((1 << 17) - 1), zeros }
+    }
+}
+
+/// The leading zeros of a number that has about `zeros`, but at least 1 bit: Armv6-M has no instruction that counts
+/// them, and the library routine takes 45 cycles.
+#[inline]
+fn zeros_near(number: u32, zeros: u32) -> u32 {
+    if cfg!(not(all(target_arch = "arm", not(target_has_atomic = "32")))) {
+        return number.leading_zeros();
+    }
+    let mut zeros = zeros;
+    while zeros > 0 && number >> (32 - zeros) != 0 {
+        zeros -= 1;
+    }
+    while ((number << zeros) as i32) > 0 {
+        zeros += 1;
+    }
+    zeros
 }
 
 #[cfg(test)]

@@ -1,21 +1,22 @@
 //! One attribute over a triangle, between [set-up](super::setup) and [shading](super::shade).
 
 use super::setup::Plane;
-use crate::math::recip::Reciprocal;
-use crate::num::wide;
+use crate::math::recip::{Reciprocal, ShortReciprocal};
+use crate::num::{mul_17, wide};
 
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q in units of 2^`exponent` · (I16F16 · unit of q); of a straight triangle or a sliver in `Exact`,
+    /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a straight triangle or a sliver in `Exact`,
     /// u − u₀ in I16F16.
     pub(super) plane: Plane,
-    pub(super) exponent: i32,
+    /// 1 … 31.
+    pub(super) shift: i32,
     /// u₀, I16F16.
     pub(super) base: i32,
-    /// The range of u − u₀ at the corners, I16F16.
+    /// The range of u − u₀ at the corners, I16F16: the least, and how much more there may be.
     pub(super) low: i32,
-    pub(super) high: i32,
+    pub(super) range: u32,
     /// What comes out is times 2^this, modulo 2³².
     pub(super) scale_log2: u32,
 }
@@ -23,23 +24,38 @@ pub(super) struct Attribute {
 impl Attribute {
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
     #[inline]
-    pub(super) fn resolve(&self, value: i32, q: Reciprocal) -> i32 {
+    pub(super) fn exact(&self, value: i32, q: Reciprocal) -> i32 {
         let product = ((wide(value, q.mantissa) + (1 << 31)) >> 32) as i32; // below 2³⁰
-        let exponent = self.exponent + q.zeros as i32 - 30;
-        let offset = if exponent < 0 {
-            let shift = (-exponent).min(31) as u32;
-            ((product >> (shift - 1)) + 1) >> 1
-        } else {
-            let exponent = exponent.min(31);
-            product.clamp(self.low >> exponent, self.high >> exponent) << exponent
-        };
+        let down = self.shift - 2 - q.zeros as i32;
+        let offset =
+            if down > 0 { ((product >> (down - 1)) + 1) >> 1 } else { self.scaled_up(product, -down) };
         self.finish(offset)
+    }
+
+    /// As [`Attribute::exact`] with 17 bits of 1/q.
+    #[inline]
+    pub(super) fn divided(&self, value: i32, q: ShortReciprocal) -> i32 {
+        let product = mul_17(value, q.mantissa); // below 2³¹
+        let down = self.shift - q.zeros as i32;
+        let offset = if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) };
+        self.finish(offset)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn scaled_up(&self, product: i32, shift: i32) -> i32 {
+        let (shift, high) = (shift.min(31), self.low.wrapping_add_unsigned(self.range));
+        product.clamp(self.low >> shift, high >> shift) << shift
     }
 
     /// The attribute in I16F16 from u − u₀.
     #[inline]
     pub(super) fn finish(&self, offset: i32) -> i32 {
-        (self.base + offset.clamp(self.low, self.high)) << self.scale_log2
+        let mut above = offset.wrapping_sub(self.low) as u32;
+        if above > self.range {
+            above = if offset < self.low { 0 } else { self.range };
+        }
+        self.base.wrapping_add(self.low).wrapping_add_unsigned(above) << self.scale_log2
     }
 
     /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
@@ -47,8 +63,8 @@ impl Attribute {
     #[inline]
     pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
         let (first, last) = (value as i32, (value as i32).wrapping_add(step.wrapping_mul(steps)));
-        let range = self.low..=self.high;
-        if range.contains(&first) && range.contains(&last) {
+        let is_in_range = |offset: i32| offset.wrapping_sub(self.low) as u32 <= self.range;
+        if is_in_range(first) && is_in_range(last) {
             return ((self.base + first) << self.scale_log2, step << self.scale_log2);
         }
         self.along_border(first, last, steps)
@@ -57,7 +73,8 @@ impl Attribute {
     #[cold]
     #[inline(never)]
     fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let rise = last.clamp(self.low, self.high) - first.clamp(self.low, self.high);
+        let high = self.low.wrapping_add_unsigned(self.range);
+        let rise = last.clamp(self.low, high) - first.clamp(self.low, high);
         (self.finish(first), step_of(rise, inverse(steps.max(1) as usize)) << self.scale_log2)
     }
 }

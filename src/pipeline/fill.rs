@@ -8,28 +8,41 @@ use core::marker::PhantomData;
 pub(crate) trait Fill<const N: usize> {
     type Word;
 
-    /// The longest run, log₂, over which [`Fill::run`] is exact enough, and beyond which nothing is gained.
+    /// The longest bent run that is exact enough.
     #[inline]
-    fn max_log2(&self) -> u32 {
-        5
+    fn longest(&self) -> i32 {
+        16
+    }
+
+    /// How many bits of each attribute's I16F16 a bent run is without: those left are its units.
+    #[inline]
+    fn dropped_bits(&self) -> [u32; N] {
+        [0; N]
     }
 
     /// One pixel.
     fn pixel(&self, at: [i32; N]) -> Self::Word;
 
-    /// Any number of pixels side by side, likewise.
+    /// Any number of pixels side by side, the first at `at`, each `step` further.
     #[inline]
-    fn run_long(&self, pixels: &mut [Self::Word], at: [i32; N], step: [i32; N]) {
-        self.run(pixels, at, step);
-    }
-
-    /// At most 2^`max_log2` pixels side by side, the first at `at`, each `step` further.
-    #[inline]
-    fn run(&self, pixels: &mut [Self::Word], mut at: [i32; N], step: [i32; N]) {
+    fn run_long(&self, pixels: &mut [Self::Word], mut at: [i32; N], step: [i32; N]) {
         for pixel in pixels {
             *pixel = self.pixel(at);
             for (value, step) in at.iter_mut().zip(step) {
                 *value = value.wrapping_add(step);
+            }
+        }
+    }
+
+    /// At most `longest` pixels and one side by side, the first at `at`, each `step` further, `bend` being added to that
+    /// each time; in units without `dropped_bits`.
+    #[inline]
+    fn bent(&self, pixels: &mut [Self::Word], mut at: [i32; N], mut step: [i32; N], bend: [i32; N]) {
+        for pixel in pixels {
+            *pixel = self.pixel(at);
+            for i in 0..N {
+                at[i] = at[i].wrapping_add(step[i]);
+                step[i] = step[i].wrapping_add(bend[i]);
             }
         }
     }
@@ -95,43 +108,64 @@ impl<F: PixelFormat, const COUNT: usize> Fill<2> for Texels<'_, F, COUNT> {
     type Word = F::Word;
 
     #[inline]
-    fn max_log2(&self) -> u32 {
-        11 - self.log2[0].max(self.log2[1]).max(6)
+    fn longest(&self) -> i32 {
+        if self.log2[0] > 6 || self.log2[1] > 6 { 8 } else { 16 }
+    }
+
+    #[inline]
+    fn dropped_bits(&self) -> [u32; 2] {
+        self.log2
     }
 
     #[inline]
     fn pixel(&self, [u, v]: [i32; 2]) -> F::Word {
-        let packed = (((v >> self.log2[1]) as u32) << 16) | ((u >> self.log2[0]) as u32 & 0xffff);
-        self.texel(packed)
+        self.texel(packed([u >> self.log2[0], v >> self.log2[1]]))
     }
 
     #[inline]
-    fn run_long(&self, pixels: &mut [F::Word], [mut u, mut v]: [i32; 2], step: [i32; 2]) {
-        let log2 = self.max_log2();
-        for block in pixels.chunks_mut(1 << log2) {
-            self.run(block, [u, v], step);
-            (u, v) = (u.wrapping_add(step[0] << log2), v.wrapping_add(step[1] << log2));
-        }
-    }
-
-    #[inline]
-    fn run(&self, pixels: &mut [F::Word], [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
+    fn run_long(&self, pixels: &mut [F::Word], [mut u, mut v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
         let [a, b] = self.log2;
+        let log2 = 11 - a.max(b).max(6);
         let towards_zero = |step: i32, log2: u32| (step + ((step >> 31) & ((1 << log2) - 1))) >> log2;
-        let step = ((towards_zero(v_step, b) as u32) << 16).wrapping_add(towards_zero(u_step, a) as u32);
-        // A negative step of u borrows from v where u starts anew: lend it the last bit.
-        let packed = (((v >> b) as u32) << 16) | ((u >> a) as u32 & 0xffff);
-        let mut packed = packed.wrapping_add((u_step as u32 >> 31) << 16);
-        let (blocks, rest) = pixels.as_chunks_mut::<4>();
-        for block in blocks {
-            for pixel in block {
+        let step = packed_step([towards_zero(u_step, a), towards_zero(v_step, b)]);
+        for block in pixels.chunks_mut(1 << log2) {
+            let mut packed = packed([u >> a, v >> b]).wrapping_add((u_step as u32 >> 31) << 16);
+            let (fours, rest) = block.as_chunks_mut::<4>();
+            for four in fours {
+                for pixel in four {
+                    *pixel = self.texel(packed);
+                    packed = packed.wrapping_add(step);
+                }
+            }
+            for pixel in rest {
                 *pixel = self.texel(packed);
                 packed = packed.wrapping_add(step);
             }
-        }
-        for pixel in rest {
-            *pixel = self.texel(packed);
-            packed = packed.wrapping_add(step);
+            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
         }
     }
+
+    #[inline]
+    fn bent(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2], bend: [i32; 2]) {
+        // A negative step of u borrows from v where u starts anew: lend it the last bit.
+        let falls = step[0].wrapping_mul(2).wrapping_add(bend[0]) as u32 >> 31;
+        let mut packed = packed(at).wrapping_add(falls << 16);
+        let (mut step, bend) = (packed_step(step), packed_step(bend));
+        for pixel in pixels {
+            *pixel = self.texel(packed);
+            packed = packed.wrapping_add(step);
+            step = step.wrapping_add(bend);
+        }
+    }
+}
+
+#[inline]
+fn packed([u, v]: [i32; 2]) -> u32 {
+    (v as u32) << 16 | (u as u32 & 0xffff)
+}
+
+/// A difference: u may be negative, and then borrows from v.
+#[inline]
+fn packed_step([u, v]: [i32; 2]) -> u32 {
+    ((v as u32) << 16).wrapping_add(u as u32)
 }

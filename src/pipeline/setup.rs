@@ -349,12 +349,13 @@ impl TriangleSetup {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let mut attribute = Attribute {
             plane: Plane::default(),
-            exponent: 0,
+            shift: 0,
             base: at[0],
             low: rise[0].min(rise[1]).min(0),
-            high: rise[0].max(rise[1]).max(0),
+            range: 0,
             scale_log2: 0,
         };
+        attribute.range = rise[0].max(rise[1]).max(0).wrapping_sub(attribute.low) as u32;
         if self.straight || mixed {
             attribute.plane = self.plane(slopes, 0, rise);
             return attribute;
@@ -362,12 +363,10 @@ impl TriangleSetup {
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger.
-        let exponent = 34 - largest.leading_zeros() as i32;
-        let scaled = products.map(|product| {
-            (if exponent >= 0 { shift_round(product, exponent as u32) } else { product << -exponent }) as i32
-        });
+        let exponent = 34u32.saturating_sub(largest.leading_zeros()).max(1);
+        let scaled = products.map(|product| shift_round(product, exponent) as i32);
         attribute.plane = self.plane(slopes, 0, scaled);
-        attribute.exponent = exponent;
+        attribute.shift = 32 - exponent as i32;
         attribute
     }
 }

@@ -19,8 +19,8 @@ use super::fill::{Each, Fill};
 use super::setup::Cull;
 use super::span::Span;
 use crate::math::Pose;
-use crate::math::recip::Reciprocal;
-use crate::num::{I16F16, wide};
+use crate::math::recip::{Reciprocal, ShortReciprocal};
+use crate::num::{I16F16, mul_16, mul_16_signed};
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
 
@@ -176,19 +176,70 @@ pub trait Shader<F: PixelFormat> {
     }
 }
 
-/// A place in a span: q and the first `N` attributes' planes.
-struct Place<'a, const N: usize> {
+/// How far apart divisions may be: the longest sub-span, in pixels, where q/|q′| is at least `LEAST[length]` / 16 pixels
+/// all along: the quadratic's error stays below 3/16 pixel.
+const LEAST: [u32; LONGEST + 1] =
+    [0, 0, 42, 55, 68, 93, 120, 152, 189, 226, 263, 301, 346, 391, 436, 480, 530];
+/// The longest sub-span.
+const LONGEST: usize = 16;
+
+/// The longest sub-span by |q′|/q at its beginning in 1/128: where q rises, and where it falls.
+static LENGTHS: [[u8; 64]; 2] = [lengths(false), lengths(true)];
+
+const fn lengths(falling: bool) -> [u8; 64] {
+    let mut lengths = [1; 64];
+    let mut i = 0;
+    while i < 64 {
+        // Along a row q/|q′| changes by one pixel a pixel.
+        let at_least = 16 * 128 / (i as u32 + 1);
+        let mut length = LONGEST;
+        while length > 1 && LEAST[length] + if falling { 16 * length as u32 } else { 0 } > at_least {
+            length -= 1;
+        }
+        lengths[i] = length as u8;
+        i += 1;
+    }
+    lengths
+}
+
+/// 1/n with 16 fraction bits, rounded down; 1 counts as a little less.
+static INVERSES: [u16; 32] = {
+    let mut inverses = [0; 32];
+    let mut n = 1;
+    while n <= LONGEST {
+        inverses[n] = (0xffff / n) as u16;
+        n += 1;
+    }
+    inverses
+};
+
+/// A pixel of a span, and what is linear along the row from there.
+struct Walk<'a, const N: usize> {
     attributes: &'a [Attribute; N],
     q: u32,
     q_step: i32,
     q_min: u32,
     values: [i32; N],
     steps: [i32; N],
-    /// The leading zeros of q at the last place, which those at the next are close to.
+    /// The leading zeros of q at the last division, which those at the next are close to.
     zeros: u32,
 }
 
-impl<const N: usize> Place<'_, N> {
+impl<'a, const N: usize> Walk<'a, N> {
+    #[inline]
+    fn new(span: &Span<'a>, attributes: &'a [Attribute; N]) -> Self {
+        let setup = span.setup;
+        let (q, q_step) = setup.at(&setup.q, span.x, span.y);
+        let mut walk =
+            Self { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
+        for (i, attribute) in attributes.iter().enumerate() {
+            let (value, step) = setup.at(&attribute.plane, span.x, span.y);
+            walk.values[i] = value as i32;
+            walk.steps[i] = step;
+        }
+        walk
+    }
+
     #[inline]
     fn advance(&mut self, pixels: i32) {
         self.q = self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels));
@@ -199,45 +250,32 @@ impl<const N: usize> Place<'_, N> {
 
     /// q with rounding errors below the least value at a corner taken away; those above 2³¹ do no harm.
     #[inline]
-    fn bounded(&self, q: u32) -> u32 {
-        if q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { q }
+    fn q(&self) -> u32 {
+        if self.q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { self.q }
     }
 
-    /// The attributes here, I16F16: one reciprocal.
+    /// The attributes here, I16F16, by a division of 20 bits.
     #[inline]
-    fn resolve(&mut self) -> [i32; N] {
-        let q = Reciprocal::coarse_near(self.bounded(self.q), self.zeros);
+    fn exact(&mut self) -> [i32; N] {
+        let q = Reciprocal::coarse_near(self.q(), self.zeros);
         self.zeros = q.zeros;
-        core::array::from_fn(|i| self.attributes[i].resolve(self.values[i], q))
+        core::array::from_fn(|i| self.attributes[i].exact(self.values[i], q))
     }
 
-    /// The steps from `at` here to the attributes of the last of `count` pixels: exact at both.
-    #[inline(never)]
-    fn last_steps(&mut self, at: &[i32; N], count: usize) -> [i32; N] {
-        if count < 2 {
-            return [0; N];
-        }
-        self.advance(count as i32 - 1);
-        let last = self.resolve();
-        let inverse = inverse(count - 1);
-        core::array::from_fn(|i| step_of(last[i].wrapping_sub(at[i]), inverse))
-    }
-
-    /// Whether linear attributes over this many pixels from here are exact enough: L² ≤ ¾·q/|q′|, where q is least.
+    /// The attributes here, I16F16, by a division of 17 bits, and q′/q with 15 fraction bits.
     #[inline]
-    fn is_straight_for(&self, pixels: i32) -> bool {
-        let slope = self.q_step.unsigned_abs().min(i32::MAX as u32) as i32;
-        let end = self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels));
-        let least = self.bounded(if self.q_step < 0 { end } else { self.q });
-        wide(pixels * pixels, slope) <= i64::from(least / 4 * 3)
+    fn divided(&mut self) -> ([i32; N], i32) {
+        let q = ShortReciprocal::near(self.q(), self.zeros);
+        self.zeros = q.zeros;
+        // 16 bits times 17: below 2³¹ unless q changes by half of itself within a pixel.
+        let slope = ((self.q_step << q.zeros) >> 16).wrapping_mul(q.mantissa as i32) >> 17;
+        (core::array::from_fn(|i| self.attributes[i].divided(self.values[i], q)), slope)
     }
 
-    /// As [`Place::is_straight_for`] 2^`log2` pixels, at most 2⁸.
+    /// The least q of the next pixels.
     #[inline]
-    fn is_straight_for_log2(&self, log2: u32) -> bool {
-        let end = self.q.wrapping_add_signed(self.q_step << log2);
-        let least = self.bounded(if self.q_step < 0 { end } else { self.q });
-        self.q_step.unsigned_abs() <= ((least >> 2) * 3) >> (2 * log2)
+    fn least(&self, pixels: i32) -> u32 {
+        if self.q_step < 0 { self.q.wrapping_add_signed(self.q_step.wrapping_mul(pixels)) } else { self.q }
     }
 }
 
@@ -257,16 +295,17 @@ impl Span<'_> {
     ///
     /// Not inlined: a shader that chooses between loops would need the stack of all of them.
     #[inline(never)]
-    pub(crate) fn fill<Q: Quality, const N: usize, L: Fill<N>>(&self, pixels: &mut [L::Word], fill: &L) {
+    pub(crate) fn fill<Q: Quality, const N: usize, L: Fill<N>>(&self, mut pixels: &mut [L::Word], fill: &L) {
         let setup = self.setup;
         let Some(attributes) = setup.attributes.first_chunk::<N>() else {
             return;
         };
+        let mut left = pixels.len() as i32 - 1;
         if setup.straight {
             let (mut at, mut step) = ([0; N], [0; N]);
             for (i, attribute) in attributes.iter().enumerate() {
                 let plane = setup.at(&attribute.plane, self.x, self.y);
-                (at[i], step[i]) = attribute.along(plane, pixels.len() as i32 - 1);
+                (at[i], step[i]) = attribute.along(plane, left);
             }
             return fill.run_long(pixels, at, step);
         }
@@ -276,51 +315,71 @@ impl Span<'_> {
             }
             return;
         }
-        let (q, q_step) = setup.at(&setup.q, self.x, self.y);
-        let mut place =
-            Place { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
-        for (i, attribute) in attributes.iter().enumerate() {
-            let (value, step) = setup.at(&attribute.plane, self.x, self.y);
-            place.values[i] = value as i32;
-            place.steps[i] = step;
-        }
+        let mut walk = Walk::new(self, attributes);
         if Q::EVERY_PIXEL {
             for pixel in pixels {
-                *pixel = fill.pixel(place.resolve());
-                place.advance(1);
+                *pixel = fill.pixel(walk.exact());
+                walk.advance(1);
             }
             return;
         }
-        let mut pixels = pixels;
-        let max_log2 = fill.max_log2();
-        let mut at = place.resolve();
-        if place.is_straight_for(pixels.len() as i32 - 1) {
-            let step = place.last_steps(&at, pixels.len());
+        let (mut at, mut slope) = walk.divided();
+        let (rise, least) = (walk.q_step.unsigned_abs(), walk.least(left));
+        // L² ≤ ¾ q/|q′|, for as small a q′ as a view along the rows has.
+        if rise < 1 << 12 && rise * (left * left) as u32 <= (least >> 2) * 3 {
+            let mut step = [0; N];
+            if left > 0 {
+                walk.advance(left);
+                let last = walk.divided().0;
+                let inverse = inverse(left as usize);
+                step = core::array::from_fn(|i| step_of(last[i].wrapping_sub(at[i]), inverse));
+            }
             return fill.run_long(pixels, at, step);
         }
-        let mut log2 = max_log2;
-        loop {
-            // As long as this place allows: where q grows along the row, sub-spans grow too.
-            log2 = (log2 + 1).min(max_log2);
-            while log2 > 0 && !place.is_straight_for_log2(log2) {
-                log2 -= 1;
-            }
-            if pixels.len() <= 1 << log2 {
-                break;
-            }
-            // The next sub-span starts at a pixel of this span, so inside the triangle.
-            let (block, rest) = core::mem::take(&mut pixels).split_at_mut(1 << log2);
-            place.advance(1 << log2);
-            let next = place.resolve();
-            // Towards zero, so that no pixel lies beyond `next`.
-            let step = core::array::from_fn(|i| {
-                let rise = next[i].wrapping_sub(at[i]);
-                (rise + ((rise >> 31) & ((1 << log2) - 1))) >> log2
-            });
-            fill.run(block, at, step);
-            (at, pixels) = (next, rest);
+        // Where q changes by half of itself within a pixel, at every pixel.
+        let longest = if rise > least >> 1 { 1 } else { fill.longest() };
+        let bits = fill.dropped_bits();
+        for (at, bits) in at.iter_mut().zip(bits) {
+            *at >>= bits;
         }
-        let step = place.last_steps(&at, pixels.len());
-        fill.run(pixels, at, step);
+        let lengths = &LENGTHS[usize::from(walk.q_step < 0)];
+        loop {
+            let by_slope = lengths[(slope.unsigned_abs() >> 8).min(63) as usize];
+            let length = i32::from(by_slope).min(longest).min(left);
+            let count = if length == left { length + 1 } else { length };
+            let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize) else {
+                return;
+            };
+            let (mut step, mut bend) = ([0; N], [0; N]);
+            let (mut next, mut next_slope) = (at, slope);
+            if length > 0 {
+                walk.advance(length);
+                (next, next_slope) = walk.divided();
+                let inverse = u32::from(INVERSES[length as usize & 31]);
+                let bending = -(slope + next_slope);
+                for i in 0..N {
+                    next[i] >>= bits[i];
+                    // The quadratic through both ends on which u′ changes as much as it should from one to the other, by
+                    // −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All towards zero, so that no pixel lies beyond `next`.
+                    let rise = next[i].wrapping_sub(at[i]);
+                    let mean = towards_zero(mul_16(rise, inverse));
+                    bend[i] = towards_zero(mul_16_signed(mean << 1, bending));
+                    let straight = rise.wrapping_sub(bend[i].wrapping_mul(length * (length - 1) / 2));
+                    step[i] = towards_zero(mul_16(straight, inverse));
+                }
+            }
+            fill.bent(run, at, step, bend);
+            left -= length;
+            if left <= 0 {
+                return;
+            }
+            (at, slope, pixels) = (next, next_slope, rest);
+        }
     }
+}
+
+/// Of a product rounded down: one more if it is negative.
+#[inline]
+fn towards_zero(product: i32) -> i32 {
+    product - (product >> 31)
 }
