@@ -41,20 +41,12 @@ impl Reciprocal {
     #[inline]
     pub(crate) fn coarse(divisor: u32) -> Self {
         let divisor = divisor.max(1);
-        Self::normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
-    }
-
-    /// As [`Reciprocal::coarse`], for a divisor that has about `zeros` leading zeros.
-    #[inline]
-    pub(crate) fn coarse_near(divisor: u32, zeros: u32) -> Self {
-        let divisor = divisor.max(1);
-        let zeros = zeros_near(divisor, zeros);
-        Self::normalised(divisor << zeros, zeros)
+        Self::coarse_normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
     }
 
     /// From the mantissa `m`, 2³¹ … 2³² − 1.
     #[inline]
-    fn normalised(m: u32, zeros: u32) -> Self {
+    pub(crate) fn coarse_normalised(m: u32, zeros: u32) -> Self {
         // 2³¹ itself, for powers of two, is one too many for an i32.
         Self { mantissa: looked_up(m).min(i32::MAX as u32) as i32, zeros }
     }
@@ -101,41 +93,10 @@ fn looked_up(m: u32) -> u32 {
     left - fall
 }
 
-/// 1/d in 18 bits, for short products: 1/d = `mantissa` · 2^(`zeros` − 48).
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ShortReciprocal {
-    /// 2¹⁶ … 2¹⁷ − 1, rounded: a relative error of 2⁻¹⁷ and that of the table.
-    pub(crate) mantissa: u32,
-    /// Leading zeros of the divisor, 0 … 31.
-    pub(crate) zeros: u32,
-}
-
-impl ShortReciprocal {
-    /// For a divisor that has about `zeros` leading zeros; 0 counts as 1.
-    #[inline]
-    pub(crate) fn near(divisor: u32, zeros: u32) -> Self {
-        let divisor = divisor.max(1);
-        let zeros = zeros_near(divisor, zeros);
-        let mantissa = (looked_up(divisor << zeros) + (1 << 13)) >> 14;
-        Self { mantissa: mantissa.min((1 << 17) - 1), zeros }
-    }
-}
-
-/// The leading zeros of a number that has about `zeros`, but at least 1 bit: Armv6-M has no instruction that counts
-/// them, and the library routine takes 45 cycles.
+/// 2⁴⁸/m for m = 2³¹ … 2³² − 1, rounded: 2¹⁶ … 2¹⁷, with a relative error of 2⁻¹⁷ and the table's, for short products.
 #[inline]
-fn zeros_near(number: u32, zeros: u32) -> u32 {
-    if cfg!(not(all(target_arch = "arm", not(target_has_atomic = "32")))) {
-        return number.leading_zeros();
-    }
-    let mut zeros = zeros;
-    while zeros > 0 && number >> (32 - zeros) != 0 {
-        zeros -= 1;
-    }
-    while ((number << zeros) as i32) > 0 {
-        zeros += 1;
-    }
-    zeros
+pub(crate) fn short(m: u32) -> u32 {
+    (looked_up(m) + (1 << 13)) >> 14
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! One attribute over a triangle, between [set-up](super::setup) and [shading](super::shade).
 
 use super::setup::Plane;
-use crate::math::recip::{Reciprocal, ShortReciprocal};
+use crate::math::recip::Reciprocal;
 use crate::num::{mul_17, wide};
 
 /// (u − u₀)·q, and the way back to u.
@@ -32,13 +32,27 @@ impl Attribute {
         self.finish(offset)
     }
 
-    /// As [`Attribute::exact`] with 17 bits of 1/q.
+    /// As [`Attribute::exact`], from 1/q in 17 bits, as [`short`](crate::math::recip::short) has it of q's mantissa, and
+    /// the leading zeros of q.
     #[inline]
-    pub(super) fn divided(&self, value: i32, q: ShortReciprocal) -> i32 {
-        let product = mul_17(value, q.mantissa); // below 2³¹
-        let down = self.shift - q.zeros as i32;
-        let offset = if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) };
-        self.finish(offset)
+    pub(super) fn divided(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
+        self.finish(self.offset(value, reciprocal, zeros))
+    }
+
+    #[inline]
+    fn offset(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
+        let product = mul_17(value, reciprocal); // within 2³¹
+        let down = self.shift - zeros as i32;
+        if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) }
+    }
+
+    /// Where q is the same all along: as [`Attribute::along`].
+    #[inline]
+    pub(super) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32, steps: i32) -> (i32, i32) {
+        let product = mul_17(step, reciprocal);
+        let down = self.shift - zeros as i32;
+        let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
+        self.along((self.offset(value, reciprocal, zeros) as u32, step), steps)
     }
 
     #[cold]

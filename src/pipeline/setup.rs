@@ -362,8 +362,8 @@ impl TriangleSetup {
         }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
-        // 30 bits of the larger.
-        let exponent = 34u32.saturating_sub(largest.leading_zeros()).max(1);
+        // 30 bits of the larger, and not quite 2³⁰.
+        let exponent = 34u32.saturating_sub((largest + (largest >> 15)).leading_zeros()).max(1);
         let scaled = products.map(|product| shift_round(product, exponent) as i32);
         attribute.plane = self.plane(slopes, 0, scaled);
         attribute.shift = 32 - exponent as i32;

@@ -13,13 +13,13 @@
 //! 3/16 of a pixel and leaves 1/16 to rounding: **L² ≤ ¾·q/|q′|**. So floors seen level and walls seen
 //! straight (q′ ≈ 0) are one affine run, and a strongly foreshortened wall divides every few pixels.
 
-use super::attribute::{Attribute, inverse, step_of};
+use super::attribute::Attribute;
 use super::color::Coloring;
 use super::fill::{Each, Fill};
 use super::setup::Cull;
 use super::span::Span;
 use crate::math::Pose;
-use crate::math::recip::{Reciprocal, ShortReciprocal};
+use crate::math::recip::{Reciprocal, short};
 use crate::num::{I16F16, mul_16, mul_16_signed};
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -231,7 +231,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         let setup = span.setup;
         let (q, q_step) = setup.at(&setup.q, span.x, span.y);
         let mut walk =
-            Self { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 0 };
+            Self { attributes, q, q_step, q_min: setup.q_min, values: [0; N], steps: [0; N], zeros: 1 };
         for (i, attribute) in attributes.iter().enumerate() {
             let (value, step) = setup.at(&attribute.plane, span.x, span.y);
             walk.values[i] = value as i32;
@@ -248,28 +248,40 @@ impl<'a, const N: usize> Walk<'a, N> {
         }
     }
 
-    /// q with rounding errors below the least value at a corner taken away; those above 2³¹ do no harm.
+    /// q with what rounding errors took below the least or above the greatest value at a corner taken away.
+    #[cold]
+    #[inline(never)]
+    fn bounded(&self) -> u32 {
+        if self.q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { self.q.min(i32::MAX as u32) }
+    }
+
+    /// q's mantissa, 2³¹ … 2³² − 1; sets `zeros`, 1 … 31.
     #[inline]
-    fn q(&self) -> u32 {
-        if self.q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { self.q }
+    fn normalised(&mut self) -> u32 {
+        let mantissa = self.q << self.zeros;
+        // Most often q has as many leading zeros as at the last division. Armv6-M has no instruction that counts them.
+        if (mantissa as i32) < 0 && mantissa >> self.zeros == self.q {
+            return mantissa;
+        }
+        let q = if self.q as i32 <= 0 { self.bounded() } else { self.q };
+        self.zeros = q.leading_zeros();
+        q << self.zeros
     }
 
     /// The attributes here, I16F16, by a division of 20 bits.
     #[inline]
     fn exact(&mut self) -> [i32; N] {
-        let q = Reciprocal::coarse_near(self.q(), self.zeros);
-        self.zeros = q.zeros;
+        let mantissa = self.normalised();
+        let q = Reciprocal::coarse_normalised(mantissa, self.zeros);
         core::array::from_fn(|i| self.attributes[i].exact(self.values[i], q))
     }
 
-    /// The attributes here, I16F16, by a division of 17 bits, and q′/q with 15 fraction bits.
+    /// Whether q is so nearly the same for some pixels that attributes are linear: (length)²·|q′|/q ≤ 3/16, the error of
+    /// going along the tangent.
     #[inline]
-    fn divided(&mut self) -> ([i32; N], i32) {
-        let q = ShortReciprocal::near(self.q(), self.zeros);
-        self.zeros = q.zeros;
-        // 16 bits times 17: below 2³¹ unless q changes by half of itself within a pixel.
-        let slope = ((self.q_step << q.zeros) >> 16).wrapping_mul(q.mantissa as i32) >> 17;
-        (core::array::from_fn(|i| self.attributes[i].divided(self.values[i], q)), slope)
+    fn is_level(&self, pixels: i32) -> bool {
+        let rise = self.q_step.unsigned_abs();
+        rise < 1 << 12 && rise * (pixels * pixels) as u32 <= (self.least(pixels) >> 4) * 3
     }
 
     /// The least q of the next pixels.
@@ -323,42 +335,46 @@ impl Span<'_> {
             }
             return;
         }
-        let (mut at, mut slope) = walk.divided();
-        let (rise, least) = (walk.q_step.unsigned_abs(), walk.least(left));
-        // L² ≤ ¾ q/|q′|, for as small a q′ as a view along the rows has.
-        if rise < 1 << 12 && rise * (left * left) as u32 <= (least >> 2) * 3 {
-            let mut step = [0; N];
-            if left > 0 {
-                walk.advance(left);
-                let last = walk.divided().0;
-                let inverse = inverse(left as usize);
-                step = core::array::from_fn(|i| step_of(last[i].wrapping_sub(at[i]), inverse));
-            }
-            return fill.run_long(pixels, at, step);
-        }
         // Where q changes by half of itself within a pixel, at every pixel.
-        let longest = if rise > least >> 1 { 1 } else { fill.longest() };
-        let bits = fill.dropped_bits();
-        for (at, bits) in at.iter_mut().zip(bits) {
-            *at >>= bits;
-        }
+        let least = walk.least(left);
+        let longest = if walk.q_step.unsigned_abs() > least >> 1 { 1 } else { fill.longest() };
         let lengths = &LENGTHS[usize::from(walk.q_step < 0)];
+        let bits = fill.dropped_bits();
+        let (mut at, mut slope, mut length) = ([0; N], 0, 0);
         loop {
-            let by_slope = lengths[(slope.unsigned_abs() >> 8).min(63) as usize];
-            let length = i32::from(by_slope).min(longest).min(left);
-            let count = if length == left { length + 1 } else { length };
-            let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize) else {
-                return;
-            };
-            let (mut step, mut bend) = ([0; N], [0; N]);
-            let (mut next, mut next_slope) = (at, slope);
+            let mantissa = walk.normalised();
+            let (reciprocal, zeros) = (short(mantissa), walk.zeros);
+            // 16 bits times 17: below 2³¹ unless q changes by half of itself within a pixel. 15 fraction bits.
+            let next_slope = ((walk.q_step << zeros) >> 16).wrapping_mul(reciprocal as i32) >> 17;
+            let mut next: [i32; N] =
+                core::array::from_fn(|i| attributes[i].divided(walk.values[i], reciprocal, zeros));
+            if length == 0 {
+                if left == 0 {
+                    return pixels.iter_mut().for_each(|pixel| *pixel = fill.pixel(next));
+                }
+                if walk.is_level(left) {
+                    let mut step = [0; N];
+                    for i in 0..N {
+                        (next[i], step[i]) =
+                            attributes[i].level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
+                    }
+                    return fill.run_long(pixels, next, step);
+                }
+            }
+            for (next, bits) in next.iter_mut().zip(bits) {
+                *next >>= bits;
+            }
             if length > 0 {
-                walk.advance(length);
-                (next, next_slope) = walk.divided();
+                left -= length;
+                let count = length + i32::from(left == 0);
+                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize)
+                else {
+                    return;
+                };
+                let (mut step, mut bend) = ([0; N], [0; N]);
                 let inverse = u32::from(INVERSES[length as usize & 31]);
                 let bending = -(slope + next_slope);
                 for i in 0..N {
-                    next[i] >>= bits[i];
                     // The quadratic through both ends on which u′ changes as much as it should from one to the other, by
                     // −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All towards zero, so that no pixel lies beyond `next`.
                     let rise = next[i].wrapping_sub(at[i]);
@@ -367,13 +383,16 @@ impl Span<'_> {
                     let straight = rise.wrapping_sub(bend[i].wrapping_mul(length * (length - 1) / 2));
                     step[i] = towards_zero(mul_16(straight, inverse));
                 }
+                fill.bent(run, at, step, bend);
+                if left == 0 {
+                    return;
+                }
+                pixels = rest;
             }
-            fill.bent(run, at, step, bend);
-            left -= length;
-            if left <= 0 {
-                return;
-            }
-            (at, slope, pixels) = (next, next_slope, rest);
+            (at, slope) = (next, next_slope);
+            let by_slope = lengths[(slope.unsigned_abs() >> 8).min(63) as usize];
+            length = i32::from(by_slope).min(longest).min(left);
+            walk.advance(length);
         }
     }
 }
