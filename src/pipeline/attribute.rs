@@ -12,9 +12,8 @@ pub(super) struct Attribute {
     pub(super) plane: Plane,
     /// 1 … 31.
     pub(super) shift: i32,
-    /// u₀, I16F16.
-    pub(super) base: i32,
-    /// The range of u − u₀ at the corners, I16F16: the least, and how much more there may be.
+    /// The range of u at the corners, I16F16: the least, how much less than u₀ that is, and how much more there may be.
+    pub(super) least: i32,
     pub(super) low: i32,
     pub(super) range: u32,
     /// What comes out is times 2^this, modulo 2³².
@@ -33,10 +32,10 @@ impl Attribute {
     }
 
     /// As [`Attribute::exact`], from 1/q in 17 bits, as [`short`](crate::math::recip::short) has it of q's mantissa, and
-    /// the leading zeros of q.
+    /// the leading zeros of q; without `scale_log2`.
     #[inline]
     pub(super) fn divided(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
-        self.finish(self.offset(value, reciprocal, zeros))
+        self.bounded(self.offset(value, reciprocal, zeros))
     }
 
     #[inline]
@@ -65,11 +64,16 @@ impl Attribute {
     /// The attribute in I16F16 from u − u₀.
     #[inline]
     pub(super) fn finish(&self, offset: i32) -> i32 {
+        self.bounded(offset) << self.scale_log2
+    }
+
+    #[inline]
+    fn bounded(&self, offset: i32) -> i32 {
         let mut above = offset.wrapping_sub(self.low) as u32;
         if above > self.range {
             above = if offset < self.low { 0 } else { self.range };
         }
-        self.base.wrapping_add(self.low).wrapping_add_unsigned(above) << self.scale_log2
+        self.least.wrapping_add_unsigned(above)
     }
 
     /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
@@ -79,7 +83,10 @@ impl Attribute {
         let (first, last) = (value as i32, (value as i32).wrapping_add(step.wrapping_mul(steps)));
         let is_in_range = |offset: i32| offset.wrapping_sub(self.low) as u32 <= self.range;
         if is_in_range(first) && is_in_range(last) {
-            return ((self.base + first) << self.scale_log2, step << self.scale_log2);
+            return (
+                self.least.wrapping_add(first.wrapping_sub(self.low)) << self.scale_log2,
+                step << self.scale_log2,
+            );
         }
         self.along_border(first, last, steps)
     }

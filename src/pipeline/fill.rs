@@ -14,10 +14,10 @@ pub(crate) trait Fill<const N: usize> {
         16
     }
 
-    /// How many bits of each attribute's I16F16 a bent run is without: those left are its units.
+    /// Attribute `i` of I16F16 times 2^`scale_log2` in the units of bent runs.
     #[inline]
-    fn dropped_bits(&self) -> [u32; N] {
-        [0; N]
+    fn in_units(&self, _i: usize, value: i32, scale_log2: u32) -> i32 {
+        value << scale_log2
     }
 
     /// One pixel.
@@ -35,7 +35,7 @@ pub(crate) trait Fill<const N: usize> {
     }
 
     /// At most `longest` pixels and one side by side, the first at `at`, each `step` further, `bend` being added to that
-    /// each time; in units without `dropped_bits`.
+    /// each time; in the units of bent runs.
     #[inline]
     fn bent(&self, pixels: &mut [Self::Word], mut at: [i32; N], mut step: [i32; N], bend: [i32; N]) {
         for pixel in pixels {
@@ -45,6 +45,18 @@ pub(crate) trait Fill<const N: usize> {
                 step[i] = step[i].wrapping_add(bend[i]);
             }
         }
+    }
+
+    /// As [`Fill::bent`] a number of pixels that the compiler knows.
+    #[inline]
+    fn block<const LENGTH: usize>(
+        &self,
+        pixels: &mut [Self::Word; LENGTH],
+        at: [i32; N],
+        step: [i32; N],
+        bend: [i32; N],
+    ) {
+        self.bent(pixels, at, step, bend);
     }
 }
 
@@ -84,13 +96,14 @@ pub(crate) struct Texels<'a, F, const COUNT: usize> {
 }
 
 impl<'a, F: PixelFormat, const COUNT: usize> Texels<'a, F, COUNT> {
-    /// `None` for a texture of another size, or with a side of one texel or of more than 2⁸.
+    /// `None` for a texture of another size, with a side of one texel, of more than 2⁸, or less than 2^`scale_log2`.
     #[inline]
-    pub(crate) fn new(texture: &Texture<'a>) -> Option<Self> {
+    pub(crate) fn new(texture: &Texture<'a>, scale_log2: u32) -> Option<Self> {
         let log2 = texture.log2();
         let [a, b] = log2;
         let texels = texture.texels().first_chunk::<COUNT>()?;
-        if texture.texels().len() != COUNT || a == 0 || b == 0 || a > 8 || b > 8 {
+        let sides = scale_log2.max(1)..=8;
+        if texture.texels().len() != COUNT || !sides.contains(&a) || !sides.contains(&b) {
             return None;
         }
         let mask = !0 << (32 - b) | ((1 << a) - 1) << (16 - a);
@@ -113,8 +126,8 @@ impl<F: PixelFormat, const COUNT: usize> Fill<2> for Texels<'_, F, COUNT> {
     }
 
     #[inline]
-    fn dropped_bits(&self) -> [u32; 2] {
-        self.log2
+    fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
+        value >> (self.log2[i].wrapping_sub(scale_log2) & 31)
     }
 
     #[inline]

@@ -350,11 +350,12 @@ impl TriangleSetup {
         let mut attribute = Attribute {
             plane: Plane::default(),
             shift: 0,
-            base: at[0],
+            least: 0,
             low: rise[0].min(rise[1]).min(0),
             range: 0,
             scale_log2: 0,
         };
+        attribute.least = at[0] + attribute.low;
         attribute.range = rise[0].max(rise[1]).max(0).wrapping_sub(attribute.low) as u32;
         if self.straight || mixed {
             attribute.plane = self.plane(slopes, 0, rise);

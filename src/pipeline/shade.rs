@@ -339,7 +339,6 @@ impl Span<'_> {
         let least = walk.least(left);
         let longest = if walk.q_step.unsigned_abs() > least >> 1 { 1 } else { fill.longest() };
         let lengths = &LENGTHS[usize::from(walk.q_step < 0)];
-        let bits = fill.dropped_bits();
         let (mut at, mut slope, mut length) = ([0; N], 0, 0);
         loop {
             let mantissa = walk.normalised();
@@ -350,7 +349,8 @@ impl Span<'_> {
                 core::array::from_fn(|i| attributes[i].divided(walk.values[i], reciprocal, zeros));
             if length == 0 {
                 if left == 0 {
-                    return pixels.iter_mut().for_each(|pixel| *pixel = fill.pixel(next));
+                    let at = core::array::from_fn(|i| next[i] << attributes[i].scale_log2);
+                    return pixels.iter_mut().for_each(|pixel| *pixel = fill.pixel(at));
                 }
                 if walk.is_level(left) {
                     let mut step = [0; N];
@@ -361,33 +361,37 @@ impl Span<'_> {
                     return fill.run_long(pixels, next, step);
                 }
             }
-            for (next, bits) in next.iter_mut().zip(bits) {
-                *next >>= bits;
+            for i in 0..N {
+                next[i] = fill.in_units(i, next[i], attributes[i].scale_log2);
             }
             if length > 0 {
                 left -= length;
-                let count = length + i32::from(left == 0);
-                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize)
-                else {
-                    return;
-                };
-                let (mut step, mut bend) = ([0; N], [0; N]);
-                let inverse = u32::from(INVERSES[length as usize & 31]);
                 let bending = -(slope + next_slope);
-                for i in 0..N {
-                    // The quadratic through both ends on which u′ changes as much as it should from one to the other, by
-                    // −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All towards zero, so that no pixel lies beyond `next`.
-                    let rise = next[i].wrapping_sub(at[i]);
-                    let mean = towards_zero(mul_16(rise, inverse));
-                    bend[i] = towards_zero(mul_16_signed(mean << 1, bending));
-                    let straight = rise.wrapping_sub(bend[i].wrapping_mul(length * (length - 1) / 2));
-                    step[i] = towards_zero(mul_16(straight, inverse));
-                }
-                fill.bent(run, at, step, bend);
+                pixels = match length {
+                    16 if left > 0 => block::<4, 16, N, L>(fill, pixels, &at, &next, bending),
+                    8 if left > 0 => block::<3, 8, N, L>(fill, pixels, &at, &next, bending),
+                    _ => {
+                        let count = (length + i32::from(left == 0)) as usize;
+                        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count)
+                        else {
+                            return;
+                        };
+                        let (mut step, mut bend) = ([0; N], [0; N]);
+                        let inverse = u32::from(INVERSES[length as usize & 31]);
+                        for i in 0..N {
+                            let rise = next[i].wrapping_sub(at[i]);
+                            let mean = towards_zero(mul_16(rise, inverse));
+                            bend[i] = towards_zero(mul_16_signed(mean << 1, bending));
+                            let straight = rise.wrapping_sub(bend[i].wrapping_mul(length * (length - 1) / 2));
+                            step[i] = towards_zero(mul_16(straight, inverse));
+                        }
+                        fill.bent(run, at, step, bend);
+                        rest
+                    }
+                };
                 if left == 0 {
                     return;
                 }
-                pixels = rest;
             }
             (at, slope) = (next, next_slope);
             let by_slope = lengths[(slope.unsigned_abs() >> 8).min(63) as usize];
@@ -395,6 +399,30 @@ impl Span<'_> {
             walk.advance(length);
         }
     }
+}
+
+/// 2^`LOG2` pixels on the quadratic through both ends on which u′ changes as much as it should from one to the other, by
+/// −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All is cut towards zero, so that no pixel lies beyond `next`.
+#[inline]
+fn block<'a, const LOG2: u32, const LENGTH: usize, const N: usize, L: Fill<N>>(
+    fill: &L,
+    pixels: &'a mut [L::Word],
+    at: &[i32; N],
+    next: &[i32; N],
+    bending: i32,
+) -> &'a mut [L::Word] {
+    let Some((run, rest)) = pixels.split_first_chunk_mut::<LENGTH>() else {
+        return &mut [];
+    };
+    let shifted = |value: i32| value.wrapping_add_unsigned((value >> 31) as u32 >> (32 - LOG2)) >> LOG2;
+    let (mut step, mut bend) = ([0; N], [0; N]);
+    for i in 0..N {
+        let rise = next[i].wrapping_sub(at[i]);
+        bend[i] = towards_zero(mul_16_signed(shifted(rise) << 1, bending));
+        step[i] = shifted(rise.wrapping_sub(bend[i].wrapping_mul((LENGTH * (LENGTH - 1) / 2) as i32)));
+    }
+    fill.block(run, *at, step, bend);
+    rest
 }
 
 /// Of a product rounded down: one more if it is negative.

@@ -182,13 +182,13 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
             (Surface::Textured(texture), None) => {
                 // Sizes with loops of their own, to which the bounds check is none.
                 if texture.wrapping() == Wrap::Repeat && !Q::EVERY_PIXEL {
-                    if let Some(texels) = Texels::<F, 0x1000>::new(texture) {
+                    if let Some(texels) = Texels::<F, 0x1000>::new(texture, self.texture_scale.into()) {
                         return span.fill::<Q, 2, _>(pixels, &texels);
                     }
-                    if let Some(texels) = Texels::<F, 0x400>::new(texture) {
+                    if let Some(texels) = Texels::<F, 0x400>::new(texture, self.texture_scale.into()) {
                         return span.fill::<Q, 2, _>(pixels, &texels);
                     }
-                    if let Some(texels) = Texels::<F, 0x4000>::new(texture) {
+                    if let Some(texels) = Texels::<F, 0x4000>::new(texture, self.texture_scale.into()) {
                         return span.fill::<Q, 2, _>(pixels, &texels);
                     }
                 }
