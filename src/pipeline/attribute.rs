@@ -21,6 +21,15 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
+    /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
+    #[inline]
+    pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
+        let rise = [at[1] - at[0], at[2] - at[0]];
+        let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
+        let range = high.wrapping_sub(low) as u32;
+        (Self { plane: Plane::default(), shift: 0, least: at[0] + low, low, range, scale_log2 }, rise)
+    }
+
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
     #[inline]
     pub(super) fn exact(&self, value: i32, q: Reciprocal) -> i32 {

@@ -2,8 +2,8 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
-use super::setup::{Cull, Needs, Oriented, TriangleSetup};
-use super::shade::{NO_PERSPECTIVE, Quality, Shader};
+use super::setup::{Cull, Needs, Oriented, Straight, TriangleSetup};
+use super::shade::{Quality, Shader};
 use super::span::Window;
 use super::stats::Count;
 use super::transform::ToClip;
@@ -43,7 +43,7 @@ pub(crate) fn draw<F, D, S>(
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache = [ScreenVertex::default(); MOST_CORNERS];
     let (mut owners, mut oldest) = ([NOBODY; CACHED], 0);
-    let straight = if projection.orthographic { NO_PERSPECTIVE } else { S::Quality::STRAIGHT };
+    let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
         let mut triangle = [ScreenVertex::default(); 3];
@@ -179,7 +179,7 @@ where
 fn draw_checked<F, D, S>(
     vertices: &[ScreenVertex; 3],
     cull: Cull,
-    straight: (u32, u32),
+    straight: Straight,
     shader: &S,
     band: &mut Band<'_, F, D>,
     window: &Window,

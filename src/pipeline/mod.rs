@@ -12,6 +12,7 @@ mod draw;
 mod fill;
 mod setup;
 mod shade;
+mod small;
 mod span;
 mod stats;
 mod transform;

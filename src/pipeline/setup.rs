@@ -60,8 +60,10 @@ pub(super) const ATTRIBUTES: usize = 5;
 pub(crate) struct TriangleSetup {
     /// x and y in 1/16 px.
     pub(super) corners: [[i32; 2]; 3],
-    /// 1 / (twice the area in 1/256 px²).
+    /// 1 / (twice the area in 1/256 px²); not of small triangles.
     area: Reciprocal,
+    /// Whether all colours at the corners are greys, so that one channel stands for three.
+    pub(super) gray: bool,
     /// Whether planes hold values at corners: a sliver, or of very different distances.
     pub(super) sliver: bool,
     /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
@@ -81,9 +83,9 @@ const _: () = assert!(size_of::<TriangleSetup>() <= 240);
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Plane {
     /// At pixel (0, 0); of a sliver, at corner 0.
-    origin: u32,
+    pub(super) origin: u32,
     /// One column to the right, one row down; of a sliver, from corner 0 to corners 1 and 2.
-    steps: [i32; 2],
+    pub(super) steps: [i32; 2],
 }
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
@@ -104,9 +106,7 @@ struct Slopes {
 /// What a shader wants of a triangle.
 pub(super) struct Needs {
     pub(super) inputs: Inputs,
-    /// How nearly the same q has to be at the corners for attributes to count as linear: see
-    /// [`Quality::STRAIGHT`](super::shade::Quality::STRAIGHT).
-    pub(super) straight: (u32, u32),
+    pub(super) straight: Straight,
     /// Whether it divides at every pixel.
     pub(super) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
@@ -115,10 +115,71 @@ pub(super) struct Needs {
     pub(super) depth: bool,
 }
 
+/// Which triangles are straight: those whose attributes count as linear on the screen.
+///
+/// Linear and exact interpolation differ by the covariance of u and q under the weights, divided by q: at most
+/// ¼ · (range of u) · (q_max − q_min)/q_min. Divided by the change M of u over a pixel that is to be at most a quarter of
+/// `Below`; u's range is at most M · (width + height).
+#[derive(Clone, Copy, Debug)]
+pub enum Straight {
+    /// All.
+    Always,
+    /// Those with (range of u)/M · (q_max − q_min) ≤ `numerator`/2^`log2` · q_min.
+    Below {
+        /// Of the fraction.
+        numerator: u32,
+        /// Of the fraction's denominator.
+        log2: u32,
+    },
+}
+
+impl Straight {
+    /// The fraction of q_min; `None` without a limit.
+    #[inline]
+    pub(super) fn limit(self, q_min: u32) -> Option<u32> {
+        match self {
+            Self::Always => None,
+            Self::Below { numerator, log2 } => Some((q_min >> log2) * numerator),
+        }
+    }
+}
+
+impl Needs {
+    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
+    /// v, then colours, of which there is one in a grey triangle.
+    #[inline]
+    pub(super) fn each_attribute(
+        &self,
+        triangle: &Oriented<'_>,
+        gray: bool,
+        mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
+    ) -> bool {
+        let vertices = triangle.vertices;
+        let uv = matches!(self.inputs, Inputs::Uv | Inputs::UvColor);
+        let color = matches!(self.inputs, Inputs::Color | Inputs::UvColor);
+        let first = if uv { 0 } else { 2 };
+        let end = if !color {
+            2
+        } else if gray {
+            3
+        } else {
+            5
+        };
+        (first..end).all(|i| {
+            let at = |vertex: &ScreenVertex| match i {
+                0 => vertex.u.to_bits(),
+                1 => vertex.v.to_bits(),
+                _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
+            };
+            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
+        })
+    }
+}
+
 /// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
 pub(super) struct Oriented<'a> {
     pub(super) vertices: [&'a ScreenVertex; 3],
-    area: u32,
+    pub(super) area: u32,
 }
 
 impl<'a> Oriented<'a> {
@@ -152,7 +213,8 @@ impl TriangleSetup {
     pub(super) fn new(triangle: &Oriented<'_>) -> Self {
         Self {
             corners: triangle.vertices.map(position),
-            area: Reciprocal::precise(triangle.area),
+            area: Reciprocal { mantissa: 0, zeros: 0 },
+            gray: false,
             sliver: false,
             straight: false,
             z: Plane::default(),
@@ -162,54 +224,51 @@ impl TriangleSetup {
         }
     }
 
-    #[inline(never)]
+    #[inline]
     pub(super) fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let Needs { inputs, straight, every_pixel, texture_scale, depth } = *needs;
+        let is_gray = |vertex: &ScreenVertex| {
+            let [red, green, blue] = vertex.color;
+            red == green && green == blue
+        };
+        self.gray = triangle.vertices.into_iter().all(is_gray);
+        if !self.set_small_planes(triangle, needs) {
+            self.set_any_planes(triangle, needs);
+        }
+    }
+
+    #[inline(never)]
+    fn set_any_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         let vertices = triangle.vertices;
+        self.area = Reciprocal::precise(triangle.area);
         let slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
         let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
         self.q_min = q[1].min(q[2]);
+        let limit = needs.straight.limit(self.q_min);
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
-        self.sliver |= every_pixel && self.q_min < 1 << 19 && straight.1 > 0;
-        if depth {
+        self.sliver |= needs.every_pixel && self.q_min < 1 << 19 && limit.is_some();
+        if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
             // for that.
             let z = near_w.map(|q| q.clamp(2048, (1 << 31) - 2048));
             self.z = self.plane(&slopes, z[0], [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32));
         }
-        if inputs == Inputs::None {
+        if needs.inputs == Inputs::None {
             return;
         }
-        // (width + height)·(q_max − q_min) ≤ straight · q_min, in 1/16 px.
-        let extent = slopes.extent * straight.1;
-        self.straight = extent == 0
-            || wide((q[0] - self.q_min) as i32 >> 4, extent as i32)
-                <= wide(self.q_min as i32, straight.0 as i32);
+        // The extent is in 1/16 px.
+        let fall = (q[0] - self.q_min) as i32;
+        self.straight = limit.is_none_or(|limit| wide(fall, slopes.extent as i32) <= i64::from(limit) << 4);
         if !self.straight {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
-
-        let mixed = self.sliver && every_pixel;
-        let colors = if matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            self.attributes[0] =
-                self.attribute(&slopes, vertices.map(|vertex| vertex.u.to_bits()), &q, mixed);
-            self.attributes[1] =
-                self.attribute(&slopes, vertices.map(|vertex| vertex.v.to_bits()), &q, mixed);
-            self.attributes[0].scale_log2 = texture_scale;
-            self.attributes[1].scale_log2 = texture_scale;
-            2
-        } else {
-            0
-        };
-        if matches!(inputs, Inputs::Color | Inputs::UvColor) {
-            for channel in 0..3 {
-                let at = vertices.map(|vertex| i32::from(vertex.color[channel].to_bits()) << 8);
-                self.attributes[colors + channel] = self.attribute(&slopes, at, &q, mixed);
-            }
-        }
+        let mixed = self.sliver && needs.every_pixel;
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
+            true
+        });
     }
 
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
@@ -282,8 +341,7 @@ impl TriangleSetup {
 
     /// Finds out whether it is a sliver, too.
     fn slopes(&mut self, area: u32) -> Slopes {
-        let [a, b, c] = self.corners;
-        let edges = [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]];
+        let (edges, a) = (edges(&self.corners), self.corners[0]);
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
         let (height, width) = (spread(edges[0]), spread(edges[1]));
         // The bounding box: `e` leads from corner 0 to one corner and back from the other.
@@ -345,18 +403,15 @@ impl TriangleSetup {
     /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there; `mixed` for
     /// [`resolve_in_sliver`](Self::resolve_in_sliver).
     #[inline(never)]
-    fn attribute(&self, slopes: &Slopes, at: [i32; 3], q: &[u32; 3], mixed: bool) -> Attribute {
-        let rise = [at[1] - at[0], at[2] - at[0]];
-        let mut attribute = Attribute {
-            plane: Plane::default(),
-            shift: 0,
-            least: 0,
-            low: rise[0].min(rise[1]).min(0),
-            range: 0,
-            scale_log2: 0,
-        };
-        attribute.least = at[0] + attribute.low;
-        attribute.range = rise[0].max(rise[1]).max(0).wrapping_sub(attribute.low) as u32;
+    fn attribute(
+        &self,
+        slopes: &Slopes,
+        at: [i32; 3],
+        scale_log2: u32,
+        q: &[u32; 3],
+        mixed: bool,
+    ) -> Attribute {
+        let (mut attribute, rise) = Attribute::between(at, scale_log2);
         if self.straight || mixed {
             attribute.plane = self.plane(slopes, 0, rise);
             return attribute;
@@ -370,6 +425,12 @@ impl TriangleSetup {
         attribute.shift = 32 - exponent as i32;
         attribute
     }
+}
+
+/// By how much the edge functions of corners 1 and 2 change a column, and a row, of 1/16 px.
+#[inline]
+pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
+    [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
 }
 
 fn position(vertex: &ScreenVertex) -> [i32; 2] {

@@ -16,7 +16,7 @@
 use super::attribute::Attribute;
 use super::color::Coloring;
 use super::fill::{Each, Fill};
-use super::setup::Cull;
+use super::setup::{Cull, Straight};
 use super::span::Span;
 use crate::math::Pose;
 use crate::math::recip::{Reciprocal, short};
@@ -30,11 +30,9 @@ use core::marker::PhantomData;
 /// The error is measured in pixels on the screen: the error of an attribute, divided by
 /// its largest change over one pixel step (at least 1 texel or 1/255).
 pub trait Quality: sealed::Sealed {
-    /// A triangle is straight, its attributes counting as linear on the screen, if
-    /// (width + height)·(q_max − q_min) ≤ this fraction · q_min. It displaces them by at most ¼ · that fraction · q_max/q_min
-    /// pixels: linear and exact interpolation differ by the covariance of u and q under the weights, divided by q.
+    /// Which triangles' attributes count as linear on the screen, without any division.
     #[doc(hidden)]
-    const STRAIGHT: (u32, u32);
+    const STRAIGHT: Straight;
     /// Whether it takes place at every pixel.
     #[doc(hidden)]
     const EVERY_PIXEL: bool;
@@ -53,22 +51,19 @@ pub struct QuarterPixel;
 pub struct Affine;
 
 impl Quality for Exact {
-    const STRAIGHT: (u32, u32) = (1, 32);
+    const STRAIGHT: Straight = Straight::Below { numerator: 1, log2: 5 };
     const EVERY_PIXEL: bool = true;
 }
 
 impl Quality for QuarterPixel {
-    const STRAIGHT: (u32, u32) = (3, 4);
+    const STRAIGHT: Straight = Straight::Below { numerator: 3, log2: 2 };
     const EVERY_PIXEL: bool = false;
 }
 
 impl Quality for Affine {
-    const STRAIGHT: (u32, u32) = NO_PERSPECTIVE;
+    const STRAIGHT: Straight = Straight::Always;
     const EVERY_PIXEL: bool = false;
 }
-
-/// Every triangle is straight.
-pub(super) const NO_PERSPECTIVE: (u32, u32) = (1, 0);
 
 mod sealed {
     pub trait Sealed {}
@@ -164,9 +159,17 @@ pub trait Shader<F: PixelFormat> {
             Inputs::Uv => {
                 span.shade::<Self::Quality, _, 2>(pixels, |[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])))
             }
+            Inputs::Color if span.setup.gray => {
+                span.shade::<Self::Quality, _, 1>(pixels, |[c]| self.color(&Varying::new([0, 0, c, c, c])));
+            }
             Inputs::Color => {
                 span.shade::<Self::Quality, _, 3>(pixels, |[r, g, b]| {
                     self.color(&Varying::new([0, 0, r, g, b]))
+                });
+            }
+            Inputs::UvColor if span.setup.gray => {
+                span.shade::<Self::Quality, _, 3>(pixels, |[u, v, c]| {
+                    self.color(&Varying::new([u, v, c, c, c]))
                 });
             }
             Inputs::UvColor => {

@@ -51,6 +51,11 @@ impl<'a> Span<'a> {
         self.y
     }
 
+    /// Whether the triangle's colours are greys, so that the first channel stands for all.
+    pub(crate) const fn is_gray(&self) -> bool {
+        self.setup.gray
+    }
+
     pub(crate) const fn setup(&self) -> &'a TriangleSetup {
         self.setup
     }

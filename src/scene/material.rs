@@ -194,10 +194,18 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
                 }
                 span.shade::<Q, F::Word, 2>(pixels, |[u, v]| F::rgb565(texture.fetch(u >> 16, v >> 16)));
             }
+            (Surface::Textured(texture), Some(_)) if span.is_gray() => {
+                span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {
+                    lit::<F>(texture.fetch(u >> 16, v >> 16), [light; 3])
+                });
+            }
             (Surface::Textured(texture), Some(_)) => {
                 span.shade::<Q, F::Word, 5>(pixels, |[u, v, red, green, blue]| {
                     lit::<F>(texture.fetch(u >> 16, v >> 16), [red, green, blue])
                 });
+            }
+            (Surface::Flat(_) | Surface::Gouraud, _) if span.is_gray() => {
+                span.shade::<Q, F::Word, 1>(pixels, |[light]| gouraud::<F>([light; 3]));
             }
             (Surface::Flat(_) | Surface::Gouraud, _) => span.shade::<Q, F::Word, 3>(pixels, gouraud::<F>),
         }

@@ -1,0 +1,101 @@
+//! Stage 3 for small triangles, which most of a mesh's are: short products, no division.
+//!
+//! A triangle of at most 64 pixels across whose attributes are [straight](super::setup) needs planes that are exact enough
+//! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a
+//! sum of products without rounding where rises have 19 bits, times 1/area with a relative error of 2⁻¹⁷. So after 64
+//! columns and rows a value is off by 1/1024 of its change over one pixel.
+
+use super::attribute::Attribute;
+use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
+use crate::math::recip::short;
+use crate::num::{mul_17, wide};
+
+/// What all planes of a triangle have in common.
+struct Slopes {
+    /// By how much the edge functions of corners 1 and 2 change a column, and a row, of 1/16 px; below 2¹⁰.
+    edges: [[i32; 2]; 2],
+    /// 1/area = `reciprocal` · 2^(`zeros` − 48).
+    reciprocal: u32,
+    zeros: u32,
+    /// Corner 0's pixel.
+    pixel: [i32; 2],
+    /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
+    to_center: [i32; 2],
+}
+
+impl Slopes {
+    /// From the value at corner 0 and the rise, within ±2²⁷, from there to corners 1 and 2.
+    #[inline]
+    fn plane(&self, mut origin: u32, rise: [i32; 2]) -> Plane {
+        let is_short = (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 19;
+        let dropped = if is_short { 0 } else { 8 };
+        let rise = rise.map(|rise| rise >> dropped);
+        let (up, down) =
+            ((self.zeros + dropped).saturating_sub(28), 28u32.saturating_sub(self.zeros + dropped));
+        let mut steps = [0; 2];
+        for axis in 0..2 {
+            let [b, c] = self.edges[axis];
+            let slope = mul_17(rise[0] * b + rise[1] * c, self.reciprocal);
+            let step = (slope << (up & 31)) >> (down & 31);
+            origin = origin
+                .wrapping_add_signed((step >> 4) * self.to_center[axis])
+                .wrapping_sub(self.pixel[axis].wrapping_mul(step) as u32);
+            steps[axis] = step;
+        }
+        Plane { origin, steps }
+    }
+}
+
+impl TriangleSetup {
+    /// Sets all planes of a small triangle whose attributes are straight: false, and nothing of use done, for any other.
+    #[inline(never)]
+    pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) -> bool {
+        let edges = edges(&self.corners);
+        let largest = edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
+        // At most 64 pixels across, and at least a quarter thick: a step of 2²⁷ over that still fits.
+        if largest >= 1 << 10 || largest * 4 > triangle.area {
+            return false;
+        }
+        let q = triangle.vertices.map(|vertex| vertex.q.to_bits().clamp(1, i32::MAX as u32));
+        let least = q[1].min(q[2]);
+        let fall = q[0] - least;
+        let limit = needs.straight.limit(least);
+        if limit.is_some() && fall > least >> 2 {
+            return false;
+        }
+        let zeros = triangle.area.leading_zeros();
+        let slopes = Slopes {
+            edges,
+            reciprocal: short(triangle.area << zeros),
+            zeros,
+            pixel: self.corners[0].map(|at| at >> 4),
+            to_center: self.corners[0].map(|at| 8 - (at & 15)),
+        };
+        if needs.depth {
+            let z = q.map(|q| q.clamp(2048, (1 << 31) - 2048));
+            let rise = [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32);
+            if fall >= 1 << 27 {
+                return false;
+            }
+            self.z = slopes.plane(z[0], rise);
+            // 1/1024 of which is a quarter of a depth step.
+            if self.z.steps.iter().any(|step| step.unsigned_abs() > 1 << 23) {
+                return false;
+            }
+        }
+        self.straight = true;
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let (mut attribute, rise) = Attribute::between(at, scale_log2);
+            if attribute.range >= 1 << 27 {
+                return false;
+            }
+            attribute.plane = slopes.plane(0, rise);
+            let [right, down] = attribute.plane.steps.map(i32::unsigned_abs);
+            let change = right.max(down).max(0x10000 >> scale_log2);
+            self.attributes[i] = attribute;
+            limit.is_none_or(|limit| {
+                wide(attribute.range as i32, fall as i32) <= wide(change as i32, limit as i32)
+            })
+        })
+    }
+}
