@@ -68,18 +68,7 @@ impl Reciprocal {
     /// `self` is the precise reciprocal of `divisor` (1 … 2²⁴).
     #[inline]
     pub(crate) fn div_rem(self, numerator: i32, divisor: i32) -> (i32, i32) {
-        let mut quotient = (wide(numerator, self.mantissa) >> (62 - self.zeros)) as i32;
-        let mut remainder = numerator.wrapping_sub(quotient.wrapping_mul(divisor));
-        // The estimate is off by at most a few; most often these loops do not run.
-        while remainder < 0 {
-            quotient -= 1;
-            remainder += divisor;
-        }
-        while remainder >= divisor {
-            quotient += 1;
-            remainder -= divisor;
-        }
-        (quotient, remainder)
+        corrected((wide(numerator, self.mantissa) >> (62 - self.zeros)) as i32, numerator, divisor)
     }
 }
 
@@ -91,6 +80,20 @@ fn looked_up(m: u32) -> u32 {
     // 17 bits × 15 bits.
     let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
     left - fall
+}
+
+/// Quotient and remainder from a quotient that is off by at most a few.
+#[inline]
+pub(crate) fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {
+    let mut remainder = numerator.wrapping_sub(quotient.wrapping_mul(divisor));
+    // Most often these loops do not run.
+    while remainder < 0 {
+        (quotient, remainder) = (quotient - 1, remainder + divisor);
+    }
+    while remainder >= divisor {
+        (quotient, remainder) = (quotient + 1, remainder - divisor);
+    }
+    (quotient, remainder)
 }
 
 /// 2⁴⁸/m for m = 2³¹ … 2³² − 1, rounded: 2¹⁶ … 2¹⁷, with a relative error of 2⁻¹⁷ and the table's, for short products.

@@ -42,6 +42,7 @@ pub(crate) fn draw<F, D, S>(
     let coloring = shader.coloring(pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache = [ScreenVertex::default(); MOST_CORNERS];
+    let mut setup = TriangleSetup::new();
     let (mut owners, mut oldest) = ([NOBODY; CACHED], 0);
     let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
@@ -56,7 +57,7 @@ pub(crate) fn draw<F, D, S>(
             if coloring.is_faceted() {
                 placer.color_face(indices, shader.cull(), &mut triangle);
             }
-            draw_checked(&triangle, shader.cull(), straight, shader, band, &window, stats);
+            draw_checked(&triangle, shader.cull(), straight, shader, band, &window, &mut setup, stats);
         }
     }
 }
@@ -171,7 +172,16 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    draw_checked(vertices, cull, S::Quality::STRAIGHT, shader, band, &window, &mut ());
+    draw_checked(
+        vertices,
+        cull,
+        S::Quality::STRAIGHT,
+        shader,
+        band,
+        &window,
+        &mut TriangleSetup::new(),
+        &mut (),
+    );
     Ok(())
 }
 
@@ -183,6 +193,7 @@ fn draw_checked<F, D, S>(
     shader: &S,
     band: &mut Band<'_, F, D>,
     window: &Window,
+    setup: &mut TriangleSetup,
     stats: &mut impl Count,
 ) where
     F: PixelFormat,
@@ -196,9 +207,8 @@ fn draw_checked<F, D, S>(
         return stats.count(|stats| &mut stats.out_of_sight);
     }
     stats.count(|stats| &mut stats.drawn);
-    let mut setup = TriangleSetup::new(&triangle);
     let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set_planes(
+    setup.set(
         &triangle,
         &Needs {
             inputs,
@@ -208,7 +218,7 @@ fn draw_checked<F, D, S>(
             depth: !D::ALWAYS_PASSES,
         },
     );
-    band.draw(&setup, window, shader);
+    band.draw(setup, window, shader);
 }
 
 /// A vertex lies outside the guard band, or its texture coordinates are out of range.

@@ -18,8 +18,8 @@
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
 use super::setup::{Oriented, TriangleSetup};
-use crate::math::recip::Reciprocal;
-use crate::num::I12F4;
+use crate::math::recip::{Reciprocal, corrected, short};
+use crate::num::{I12F4, mul_17};
 use crate::scene::Viewport;
 use core::ops::Range;
 
@@ -83,6 +83,9 @@ impl Edge {
     /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
     fn new(top: [i32; 2], bottom: [i32; 2], row: i32) -> Self {
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
+        if dy < 1 << 10 && dx.abs() < 1 << 10 {
+            return Self::short([dx, dy], top, row);
+        }
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
         // −E at centre 0, plus divisor − 1 to round up: below 16392·32752 + 32752² + 524032 < 2³¹.
@@ -90,6 +93,25 @@ impl Edge {
         let (x, remainder) = reciprocal.div_rem((top[0] - 8) * dy + below * dx + divisor - 1, divisor);
         let (slope, slope_remainder) = reciprocal.div_rem(16 * dx, divisor);
         Self { x, remainder, slope, slope_remainder, divisor }
+    }
+
+    /// An edge less than 64 pixels wide and high, likewise.
+    #[inline]
+    fn short([dx, dy]: [i32; 2], top: [i32; 2], row: i32) -> Self {
+        let divisor = 16 * dy;
+        let (mut mantissa, mut zeros) = ((dy as u32) << 22, 22);
+        while (mantissa as i32) > 0 {
+            (mantissa, zeros) = (mantissa << 1, zeros + 1);
+        }
+        // 1/dy = reciprocal · 2^(zeros − 48): off by 2⁻¹⁷, so quotients below 2¹⁷ by less than 1.
+        let reciprocal = short(mantissa);
+        let below = row * 16 + 8 - top[1];
+        // Below 2²¹.
+        let numerator = ((top[0] & 15) - 8) * dy + below * dx + divisor - 1;
+        let x = mul_17(numerator << 8, reciprocal) >> (44 - zeros);
+        let (x, remainder) = corrected(x, numerator, divisor);
+        let (slope, slope_remainder) = corrected((dx * reciprocal as i32) >> (48 - zeros), 16 * dx, divisor);
+        Self { x: (top[0] >> 4) + x, remainder, slope, slope_remainder, divisor }
     }
 
     fn next_row(&mut self) {
