@@ -182,7 +182,7 @@ impl Clip {
             cut_by(
                 &mut polygon,
                 |vertex| {
-                    let at = self.screen(vertex, axis, Reciprocal::precise(self.divisor(vertex) as u32));
+                    let at = self.screen(vertex, axis, Reciprocal::coarse(self.divisor(vertex) as u32));
                     if side < 0 { at >= side } else { at <= side }
                 },
                 |vertex| {
@@ -223,7 +223,7 @@ impl Clip {
         if vertex.w < self.near || vertex.w > self.far {
             return false;
         }
-        let w = Reciprocal::precise(self.divisor(vertex) as u32);
+        let w = Reciprocal::coarse(self.divisor(vertex) as u32);
         let (x, y) = (self.screen(vertex, 0, w), self.screen(vertex, 1, w));
         if !range.contains(&x) || !range.contains(&y) {
             return false;

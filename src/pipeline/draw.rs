@@ -2,10 +2,11 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
-use super::setup::{Cull, Needs, Oriented, Straight, TriangleSetup};
+use super::setup::{Cull, Needs, Oriented, TriangleSetup};
 use super::shade::{Quality, Shader};
 use super::span::Window;
 use super::stats::Count;
+use super::straight::Straight;
 use super::transform::ToClip;
 use crate::math::{Pose, Vec3};
 use crate::scene::{Mesh, Projection, Vertex};
@@ -41,25 +42,33 @@ pub(crate) fn draw<F, D, S>(
     }
     let coloring = shader.coloring(pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
-    let mut cache = [ScreenVertex::default(); MOST_CORNERS];
+    let mut cache =
+        Cache { vertices: [ScreenVertex::default(); MOST_CORNERS], owners: [NOBODY; CACHED], oldest: 0 };
     let mut setup = TriangleSetup::new();
-    let (mut owners, mut oldest) = ([NOBODY; CACHED], 0);
     let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
-        let mut triangle = [ScreenVertex::default(); 3];
-        let inside = placer.place(indices, &mut cache, &mut owners, &mut oldest, &mut triangle, stats);
-        let pieces = if inside { 1 } else { placer.cut(indices, &mut cache, &mut owners, stats) };
+        let placed = placer.place(indices, &mut cache, stats);
+        let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
         for piece in 0..pieces {
-            if !inside {
-                triangle = [cache[0], cache[piece + 1], cache[piece + 2]];
-            }
+            let slots = placed.unwrap_or([0, piece + 1, piece + 2]);
+            let mut triangle = slots.map(|slot| &cache.vertices[slot.min(MOST_CORNERS - 1)]);
+            let mut copies;
             if coloring.is_faceted() {
-                placer.color_face(indices, shader.cull(), &mut triangle);
+                copies = triangle.map(|vertex| *vertex);
+                placer.color_face(indices, shader.cull(), &mut copies);
+                triangle = copies.each_ref();
             }
-            draw_checked(&triangle, shader.cull(), straight, shader, band, &window, &mut setup, stats);
+            draw_checked(triangle, shader.cull(), straight, shader, band, &window, &mut setup, stats);
         }
     }
+}
+
+/// The vertices that were placed last.
+struct Cache {
+    vertices: [ScreenVertex; MOST_CORNERS],
+    owners: [u32; CACHED],
+    oldest: usize,
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -72,53 +81,43 @@ struct Placer<'a> {
 }
 
 impl Placer<'_> {
-    /// A triangle's vertices on the screen, from the cache if they are there; false if it has to be cut.
+    /// Where in the cache a triangle's vertices on the screen are, or are now; `None` if it has to be cut.
     #[inline(never)]
-    fn place(
-        &self,
-        indices: [u16; 3],
-        cache: &mut [ScreenVertex; MOST_CORNERS],
-        owners: &mut [u32; CACHED],
-        oldest: &mut usize,
-        triangle: &mut [ScreenVertex; 3],
-        stats: &mut impl Count,
-    ) -> bool {
-        for (index, to) in indices.iter().zip(triangle) {
-            let index = u32::from(*index);
-            let slot = match owners.iter().position(|owner| *owner == index) {
+    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[usize; 3]> {
+        let mut slots = [CACHED; 3];
+        for (i, index) in indices.into_iter().enumerate() {
+            let index = u32::from(index);
+            slots[i] = match cache.owners.iter().position(|owner| *owner == index) {
                 Some(slot) => slot,
                 None => {
                     stats.count(|stats| &mut stats.transformed);
-                    let slot = *oldest % CACHED;
-                    owners[slot] = NOBODY;
-                    let vertex = self.mesh.vertex(index as u16);
-                    if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache[slot]) {
-                        return false;
+                    // The oldest, but none of this triangle's.
+                    let mut slot = cache.oldest % CACHED;
+                    while slots.contains(&slot) {
+                        slot = (slot + 1) % CACHED;
                     }
-                    owners[slot] = index;
-                    *oldest = slot + 1;
+                    cache.owners[slot] = NOBODY;
+                    let vertex = self.mesh.vertex(index as u16);
+                    if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
+                        return None;
+                    }
+                    cache.owners[slot] = index;
+                    cache.oldest = slot + 1;
                     slot
                 }
             };
-            *to = cache[slot];
         }
-        true
+        Some(slots)
     }
 
     /// Cuts a triangle, in the cache's memory: how many pieces it has, as a fan around the first vertex.
     #[cold]
     #[inline(never)]
-    fn cut(
-        &self,
-        indices: [u16; 3],
-        cache: &mut [ScreenVertex; MOST_CORNERS],
-        owners: &mut [u32; CACHED],
-        stats: &mut impl Count,
-    ) -> usize {
+    fn cut(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.clipped);
-        *owners = [NOBODY; CACHED];
+        cache.owners = [NOBODY; CACHED];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        match self.clip.cut(self.to_clip, self.coloring, corners, cache) {
+        match self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) {
             Some(corners) => corners.saturating_sub(2).min(MOST_CORNERS - 2),
             None => {
                 stats.count(|stats| &mut stats.rejected);
@@ -130,7 +129,7 @@ impl Placer<'_> {
     /// Gives a triangle that is not culled the light of its face.
     #[inline(never)]
     fn color_face(&self, indices: [u16; 3], cull: Cull, triangle: &mut [ScreenVertex; 3]) {
-        if Oriented::new(triangle, cull).is_none() {
+        if Oriented::new(triangle.each_ref(), cull).is_none() {
             return;
         }
         let corners = indices.map(|index| self.mesh.vertex(index));
@@ -173,7 +172,7 @@ where
     }
     let window = band.window();
     draw_checked(
-        vertices,
+        vertices.each_ref(),
         cull,
         S::Quality::STRAIGHT,
         shader,
@@ -187,7 +186,7 @@ where
 
 #[inline(never)]
 fn draw_checked<F, D, S>(
-    vertices: &[ScreenVertex; 3],
+    vertices: [&ScreenVertex; 3],
     cull: Cull,
     straight: Straight,
     shader: &S,

@@ -15,6 +15,7 @@ mod shade;
 mod small;
 mod span;
 mod stats;
+mod straight;
 mod transform;
 
 pub use clip::ScreenVertex;

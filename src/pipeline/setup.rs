@@ -37,6 +37,7 @@
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
 use super::shade::Inputs;
+use super::straight::{Bend, Straight};
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_high, mul_round, shift_round, wide};
 
@@ -99,8 +100,6 @@ struct Slopes {
     to_center: [i32; 2],
     /// From that pixel to the nearest on the screen.
     to_screen: [i32; 2],
-    /// Width and height of the bounding box together, in 1/16 px.
-    extent: u32,
 }
 
 /// What a shader wants of a triangle.
@@ -113,35 +112,6 @@ pub(super) struct Needs {
     pub(super) texture_scale: u32,
     /// Whether depth is tested.
     pub(super) depth: bool,
-}
-
-/// Which triangles are straight: those whose attributes count as linear on the screen.
-///
-/// Linear and exact interpolation differ by the covariance of u and q under the weights, divided by q: at most
-/// ¼ · (range of u) · (q_max − q_min)/q_min. Divided by the change M of u over a pixel that is to be at most a quarter of
-/// `Below`; u's range is at most M · (width + height).
-#[derive(Clone, Copy, Debug)]
-pub enum Straight {
-    /// All.
-    Always,
-    /// Those with (range of u)/M · (q_max − q_min) ≤ `numerator`/2^`log2` · q_min.
-    Below {
-        /// Of the fraction.
-        numerator: u32,
-        /// Of the fraction's denominator.
-        log2: u32,
-    },
-}
-
-impl Straight {
-    /// The fraction of q_min; `None` without a limit.
-    #[inline]
-    pub(super) fn limit(self, q_min: u32) -> Option<u32> {
-        match self {
-            Self::Always => None,
-            Self::Below { numerator, log2 } => Some((q_min >> log2) * numerator),
-        }
-    }
 }
 
 impl Needs {
@@ -185,7 +155,7 @@ pub(super) struct Oriented<'a> {
 impl<'a> Oriented<'a> {
     /// `None` for a triangle without area or culled.
     #[inline]
-    pub(super) fn new([a, b, c]: &'a [ScreenVertex; 3], cull: Cull) -> Option<Self> {
+    pub(super) fn new([a, b, c]: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
         let ([ax, ay], [bx, by], [cx, cy]) = (position(a), position(b), position(c));
         let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // positive: clockwise on the screen
         match cull {
@@ -246,9 +216,9 @@ impl TriangleSetup {
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
         let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
         self.q_min = q[1].min(q[2]);
-        let limit = needs.straight.limit(self.q_min);
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
-        self.sliver |= needs.every_pixel && self.q_min < 1 << 19 && limit.is_some();
+        let is_perspective = matches!(needs.straight, Straight::Below(_));
+        self.sliver |= needs.every_pixel && self.q_min < 1 << 19 && is_perspective;
         if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
             // for that.
@@ -258,9 +228,12 @@ impl TriangleSetup {
         if needs.inputs == Inputs::None {
             return;
         }
-        // The extent is in 1/16 px.
-        let fall = (q[0] - self.q_min) as i32;
-        self.straight = limit.is_none_or(|limit| wide(fall, slopes.extent as i32) <= i64::from(limit) << 4);
+        self.straight = match needs.straight {
+            Straight::Always => true,
+            Straight::Below(limit) => {
+                Bend::new(&edges(&self.corners), q).is_some_and(|bend| bend.is_straight(limit))
+            }
+        };
         if !self.straight {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
@@ -344,8 +317,6 @@ impl TriangleSetup {
         let (edges, a) = (edges(&self.corners), self.corners[0]);
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
         let (height, width) = (spread(edges[0]), spread(edges[1]));
-        // The bounding box: `e` leads from corner 0 to one corner and back from the other.
-        let size = |e: [i32; 2]| (e[0].max(0).max(-e[1]) - e[0].min(0).min(-e[1])) as u32;
         // The largest difference to 30 bits, times 1/area.
         let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
         let shift = largest.leading_zeros() - 2;
@@ -360,7 +331,6 @@ impl TriangleSetup {
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
             to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
-            extent: edges.map(size).iter().sum(),
         }
     }
 

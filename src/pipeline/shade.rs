@@ -16,8 +16,9 @@
 use super::attribute::Attribute;
 use super::color::Coloring;
 use super::fill::{Each, Fill};
-use super::setup::{Cull, Straight};
+use super::setup::Cull;
 use super::span::Span;
+use super::straight::Straight;
 use crate::math::Pose;
 use crate::math::recip::{Reciprocal, short};
 use crate::num::{I16F16, mul_16, mul_16_signed};
@@ -51,12 +52,12 @@ pub struct QuarterPixel;
 pub struct Affine;
 
 impl Quality for Exact {
-    const STRAIGHT: Straight = Straight::Below { numerator: 1, log2: 5 };
+    const STRAIGHT: Straight = Straight::Below((1 << 16) / 32);
     const EVERY_PIXEL: bool = true;
 }
 
 impl Quality for QuarterPixel {
-    const STRAIGHT: Straight = Straight::Below { numerator: 3, log2: 2 };
+    const STRAIGHT: Straight = Straight::Below((1 << 16) / 4 * 3);
     const EVERY_PIXEL: bool = false;
 }
 

@@ -7,8 +7,9 @@
 
 use super::attribute::Attribute;
 use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
+use super::straight::{Bend, Straight};
 use crate::math::recip::short;
-use crate::num::{mul_17, wide};
+use crate::num::mul_17;
 
 /// What all planes of a triangle have in common.
 struct Slopes {
@@ -57,12 +58,15 @@ impl TriangleSetup {
             return false;
         }
         let q = triangle.vertices.map(|vertex| vertex.q.to_bits().clamp(1, i32::MAX as u32));
-        let least = q[1].min(q[2]);
-        let fall = q[0] - least;
-        let limit = needs.straight.limit(least);
-        if limit.is_some() && fall > least >> 2 {
-            return false;
-        }
+        let bend = match needs.straight {
+            Straight::Always => None,
+            Straight::Below(limit) => {
+                let Some(bend) = Bend::new(&edges, q) else {
+                    return false;
+                };
+                if bend.is_straight(limit) { None } else { Some((bend, limit)) }
+            }
+        };
         let zeros = triangle.area.leading_zeros();
         let slopes = Slopes {
             edges,
@@ -74,7 +78,7 @@ impl TriangleSetup {
         if needs.depth {
             let z = q.map(|q| q.clamp(2048, (1 << 31) - 2048));
             let rise = [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32);
-            if fall >= 1 << 27 {
+            if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
                 return false;
             }
             self.z = slopes.plane(z[0], rise);
@@ -90,12 +94,9 @@ impl TriangleSetup {
                 return false;
             }
             attribute.plane = slopes.plane(0, rise);
-            let [right, down] = attribute.plane.steps.map(i32::unsigned_abs);
-            let change = right.max(down).max(0x10000 >> scale_log2);
             self.attributes[i] = attribute;
-            limit.is_none_or(|limit| {
-                wide(attribute.range as i32, fall as i32) <= wide(change as i32, limit as i32)
-            })
+            bend.as_ref()
+                .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2))
         })
     }
 }

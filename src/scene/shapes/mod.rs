@@ -241,19 +241,15 @@ impl<const V: usize, const T: usize> Builder<V, T> {
         self.triangle(a, c, d);
     }
 
-    /// The squares between rows of `columns` + 1 vertices, from left to right and from top to bottom, that begin at
-    /// vertex `first`.
+    /// The squares between rows of `columns` + 1 vertices, [`in_strips`], that begin at vertex `first`.
     const fn squares(&mut self, first: usize, columns: usize, rows: usize) {
-        let mut row = 0;
-        while row < rows {
-            let top = first + row * (columns + 1);
+        let mut i = 0;
+        while i < columns * rows {
+            let (column, row) = in_strips(i, columns, rows);
+            let top = first + row * (columns + 1) + column;
             let bottom = top + columns + 1;
-            let mut column = 0;
-            while column < columns {
-                self.square(bottom + column, bottom + column + 1, top + column + 1, top + column);
-                column += 1;
-            }
-            row += 1;
+            self.square(bottom, bottom + 1, top + 1, top);
+            i += 1;
         }
     }
 
@@ -261,6 +257,18 @@ impl<const V: usize, const T: usize> Builder<V, T> {
         assert!(self.next_vertex == V && self.next_triangle == T);
         self.shape
     }
+}
+
+/// Column and row of the `i`-th square, in strips of three columns from top to bottom: all corners of a strip's row and of the
+/// next are found in the draw call's cache of 8 vertices. Two vertices are transformed for three triangles, instead of one for
+/// each when whole rows are drawn.
+const fn in_strips(i: usize, columns: usize, rows: usize) -> (usize, usize) {
+    const WIDTH: usize = 3;
+    let strip = i / (WIDTH * rows);
+    let left = strip * WIDTH;
+    let width = if columns - left < WIDTH { columns - left } else { WIDTH };
+    let i = i - left * rows;
+    (left + i % width, i / width)
 }
 
 /// A length that was given, if it is one.

@@ -1,6 +1,6 @@
 //! Shapes that go round: sphere, torus, cylinder.
 
-use super::{Builder, Counts, Shape, length, part};
+use super::{Builder, Counts, Shape, in_strips, length, part};
 use crate::num::I12F4;
 
 /// A sphere with a pole at each end of the y axis, `segments` ≥ 3 around it and `rings` ≥ 2 from pole to pole.
@@ -64,16 +64,13 @@ pub const fn torus<const V: usize, const T: usize>(
     assert!(rings >= 3 && sides >= 3, "a torus has at least 3 rings and 3 sides");
     let mut shape = Builder::new(Counts::torus(rings, sides));
     torus_vertices(&mut shape, [major, minor], [rings, sides], [rings - 1, sides - 1], [0; 2]);
-    let mut ring = 0;
-    while ring < rings {
+    let mut i = 0;
+    while i < rings * sides {
+        let (side, ring) = in_strips(i, sides, rings);
         let (here, there) = (ring * sides, (ring + 1) % rings * sides);
-        let mut side = 0;
-        while side < sides {
-            let next = (side + 1) % sides;
-            shape.square(here + side, there + side, there + next, here + next);
-            side += 1;
-        }
-        ring += 1;
+        let next = (side + 1) % sides;
+        shape.square(here + side, there + side, there + next, here + next);
+        i += 1;
     }
     shape.finish()
 }
@@ -94,15 +91,12 @@ pub const fn torus_textured<const V: usize, const T: usize>(
     assert!(rings >= 3 && sides >= 3, "a torus has at least 3 rings and 3 sides");
     let mut shape = Builder::new(Counts::torus_textured(rings, sides));
     torus_vertices(&mut shape, [major, minor], [rings, sides], [rings, sides], texels);
-    let mut ring = 0;
-    while ring < rings {
+    let mut i = 0;
+    while i < rings * sides {
+        let (side, ring) = in_strips(i, sides, rings);
         let (here, there) = (ring * (sides + 1), (ring + 1) * (sides + 1));
-        let mut side = 0;
-        while side < sides {
-            shape.square(here + side, there + side, there + side + 1, here + side + 1);
-            side += 1;
-        }
-        ring += 1;
+        shape.square(here + side, there + side, there + side + 1, here + side + 1);
+        i += 1;
     }
     shape.finish()
 }

@@ -1,0 +1,76 @@
+//! Which triangles are straight: those whose attributes count as linear on the screen.
+//!
+//! Linear interpolation and the exact one differ by the covariance of u and q under the weights α, divided by q:
+//!
+//! ```text
+//! u_exact − u_linear = (Σ αᵢαⱼ·Δuᵢⱼ·Δqᵢⱼ) / q,   over the edges ij
+//! ```
+//!
+//! That is at most ¼·max |Δuᵢⱼ·Δqᵢⱼ| / q_min: if all three products have one sign, u and q rise together, the largest is that of
+//! the whole range, and a covariance is at most a quarter of the product of the ranges; else the two of one sign share a
+//! corner i, and αᵢ(1 − αᵢ) ≤ ¼. To be pixels it is divided by the change of u over a pixel, which on each edge is at least
+//! |Δuᵢⱼ| / (|Δxᵢⱼ| + |Δyᵢⱼ|), and counts as at least 1 texel or 1/255.
+
+use crate::math::recip::short;
+use crate::num::{mul_16, mul_17};
+
+/// Which triangles are straight in some quality.
+#[derive(Clone, Copy, Debug)]
+pub enum Straight {
+    /// All.
+    Always,
+    /// Those with 4 · error ≤ this, in pixels of 16 fraction bits, where distances differ by less than a quarter.
+    Below(u32),
+}
+
+/// What the error of linear interpolation depends on, but for the attribute.
+pub(super) struct Bend {
+    /// |Δx| + |Δy| of the edges 01, 02, 12 in 1/16 px, below 2¹⁷.
+    lengths: [u32; 3],
+    /// |Δq|/q_min along them, 16 fraction bits, below ¼.
+    falls: [u32; 3],
+}
+
+impl Bend {
+    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest.
+    /// `None` if distances differ by a quarter.
+    #[inline]
+    pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3]) -> Option<Self> {
+        let least = q1.min(q2);
+        if q0 - least >= least >> 2 {
+            return None;
+        }
+        let zeros = least.leading_zeros();
+        let reciprocal = short(least << zeros);
+        let length = |x: i32, y: i32| x.unsigned_abs() + y.unsigned_abs();
+        Some(Self {
+            lengths: [
+                length(across[1], down[1]),
+                length(across[0], down[0]),
+                length(across[0] + across[1], down[0] + down[1]),
+            ],
+            // Rounded up.
+            falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
+                .map(|fall| (mul_17((fall << zeros) as i32, reciprocal) as u32 >> 16) + 1),
+        })
+    }
+
+    /// Whether all attributes are straight.
+    #[inline]
+    pub(super) fn is_straight(&self, limit: u32) -> bool {
+        // 2¹⁷ · 2¹⁴, in 1/16 px.
+        self.lengths.iter().zip(self.falls).all(|(length, fall)| length * fall <= limit << 4)
+    }
+
+    /// Whether an attribute is that rises so from corner 0 to 1 and 2, by less than 2²⁸; an error of `unit` is one pixel's at
+    /// most. The edges are shorter than 2¹².
+    #[inline]
+    pub(super) fn is_straight_for(&self, limit: u32, rise: [i32; 2], unit: u32) -> bool {
+        let rises = [rise[0], rise[1], rise[1] - rise[0]].map(i32::unsigned_abs);
+        // 4 · error, at most a quarter of a rise.
+        let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
+        let error = (error >> 8) + 1;
+        error <= (unit >> 8) * (limit >> 8) >> 8
+            || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
+    }
+}
