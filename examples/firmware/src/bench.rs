@@ -162,6 +162,15 @@ pub const S2_PIXELS: u32 = 6_744;
 /// Pixels that s3 and s3_tex cover.
 pub const S3_PIXELS: u32 = 6_826;
 
+/// Bytes of the meshes and the texture of s1, and of those of all scenes: what of a program's flash is no code.
+#[must_use]
+pub fn data_bytes() -> [usize; 2] {
+    let texture = size_of_val(&TEXELS);
+    let [s1, others @ ..] = [&FLOOR, &GROUND, &CUBE, &TORUS_MESH, &TEXTURED_TORUS_MESH]
+        .map(|mesh| size_of_val(mesh.vertices()) + mesh.triangles().len() * size_of::<[u16; 3]>());
+    [texture + s1, texture + s1 + others.iter().sum::<usize>()]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
