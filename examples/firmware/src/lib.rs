@@ -9,6 +9,7 @@
 
 pub mod bench;
 pub mod checksum;
+pub mod cost;
 pub mod gray4;
 pub mod scene;
 pub mod ssd0323;
