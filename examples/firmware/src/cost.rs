@@ -3,7 +3,7 @@
 
 use crate::bench::{CAMERA, Flat, LIGHTS, WALL};
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
-use fixel::{DepthFormat, Quality, prelude::*};
+use fixel::{DepthFormat, Quality, num::I12F4, prelude::*};
 
 /// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
 fn material(surface: u32) -> Material<'static> {
@@ -36,17 +36,23 @@ const fn corner([x, y, w]: [f32; 3]) -> Vertex {
 /// A triangle that hides all of a rectangle of 128×64, seen straight on: the viewport cuts it to one span a row.
 const STRAIGHT: Mesh =
     Mesh::new(&triangle([[-68.0, -36.0, 1.0], [204.0, -36.0, 1.0], [-68.0, 108.0, 1.0]]), &[[0, 1, 2]]);
-/// The same on the screen, seven times as far away at the left as at the right.
-const FORESHORTENED: Mesh =
+/// The same on the screen, seven times as far away at the top as at the bottom: a floor seen level.
+const FLOOR: Mesh =
+    Mesh::new(&triangle([[-68.0, -36.0, 0.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]]), &[[0, 1, 2]]);
+/// The same, seven times as far away at the left as at the right: a wall seen along.
+const WALL_ALONG: Mesh =
     Mesh::new(&triangle([[-68.0, -36.0, 3.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]]), &[[0, 1, 2]]);
 
-/// Width and height of the rectangles by their shape: bit 0 for wide, bit 1 for high.
+/// Width and height of the rectangles by their shape: bit 0 for wide, bit 1 for high. None is so narrow that a loop for
+/// short rows would be worth its while.
 #[must_use]
 pub const fn size(shape: u32) -> Size {
-    Size::new(if shape & 1 == 0 { 16 } else { 128 }, if shape & 2 == 0 { 8 } else { 64 })
+    Size::new(if shape & 1 == 0 { 32 } else { 128 }, if shape & 2 == 0 { 8 } else { 64 })
 }
 
-/// A rectangle in a quality: affine, default, exact. Bit 2 of the shape is for a foreshortened surface.
+/// A rectangle in a quality: affine, default, exact. Bits 2 and 3 of the shape are for its slope: none, a floor, a wall. Bits 4
+/// and 5 say which quarter of the wide rectangle a narrow one shows: four of them are the same pixels in four times as
+/// many rows.
 #[inline(always)]
 pub fn rectangle<D: DepthFormat>(surface: u32, quality: u32, shape: u32, frame: &mut Band<'_, Rgb565, D>) {
     let material = material(surface);
@@ -62,8 +68,16 @@ fn rectangle_of<D: DepthFormat, Q: Quality>(
     shape: u32,
     frame: &mut Band<'_, Rgb565, D>,
 ) {
-    let mesh = if shape & 4 == 0 { STRAIGHT } else { FORESHORTENED };
-    let camera = Camera::focal(80.0, size(shape)).near(0.1).viewport(Point::new(16, 24));
+    let mesh = match shape >> 2 & 3 {
+        0 => STRAIGHT,
+        1 => FLOOR,
+        _ => WALL_ALONG,
+    };
+    let left = if shape & 1 == 0 { (shape >> 4 & 3) as i16 * 32 } else { 0 };
+    let size = size(shape);
+    let middle = I12F4::from_num(64 - size.width as i16 / 2 - left);
+    let camera = Camera::focal(80.0, size).near(0.1).viewport(Point::new(16 + i32::from(left), 24));
+    let camera = camera.off_axis(middle, I12F4::ZERO);
     camera.draw(&mesh, &Pose::IDENTITY, material, frame);
 }
 
@@ -139,7 +153,7 @@ mod tests {
 
     #[test]
     fn rectangles_cover_what_their_shape_says() {
-        for (surface, quality, shape) in (0..6 * 3 * 8).map(|i| (i % 6, i / 6 % 3, i / 18)) {
+        for (surface, quality, shape) in (0..6 * 3 * 64).map(|i| (i % 6, i / 6 % 3, i / 18)) {
             let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
             let mut frame = Deep::new(SIZE, &mut pixels, &mut depth).expect("the size fits");
             rectangle(surface, quality, shape, &mut frame);
