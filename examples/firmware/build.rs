@@ -5,9 +5,17 @@ use std::{env, fs, path::Path};
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=memory");
-    println!("cargo:rustc-check-cfg=cfg(board, values(\"lm3s6965evb\", \"microbit\", \"mps2\"))");
+    println!("cargo:rustc-check-cfg=cfg(board, values(\"bare\", \"lm3s6965evb\", \"microbit\", \"mps2\"))");
     let var = |name| env::var(name).expect("cargo sets it for build scripts");
+    let bare = env::var_os("CARGO_FEATURE_BARE").is_some();
     let (board, memory) = match var("TARGET").as_str() {
+        // No board: a counter calls the functions of `bench` and `cost`.
+        target if target.starts_with("riscv32") || bare && target.starts_with("thumb") => {
+            println!("cargo:rustc-cfg=board=\"bare\"");
+            println!("cargo:rustc-link-arg-bins=--nmagic");
+            println!("cargo:rustc-link-arg-bins=-T{}/memory/bare.x", var("CARGO_MANIFEST_DIR"));
+            return;
+        }
         // The boards on which every core's code can be counted.
         target if target.starts_with("thumb") && env::var_os("CARGO_FEATURE_MPS2").is_some() => {
             ("mps2", "memory/mps2.x")

@@ -15,7 +15,7 @@ pub const PIXELS: usize = 160 * 120;
 
 /// 64×64 texels of a brick wall with a border, so that a wrong repeat would show.
 static TEXELS: [u16; 4096] = wall();
-static WALL: Texture = Texture::new(&TEXELS, 6, 6);
+pub(crate) static WALL: Texture = Texture::new(&TEXELS, 6, 6);
 
 const fn wall() -> [u16; 4096] {
     let mut texels = [0; 4096];
@@ -93,7 +93,7 @@ const fn cube_triangles() -> [[u16; 3]; 12] {
 
 const CUBE: Mesh = Mesh::new(FACES.as_flattened(), &cube_triangles());
 
-const CAMERA: Camera = Camera::focal(80.0, SIZE).near(0.1);
+pub(crate) const CAMERA: Camera = Camera::focal(80.0, SIZE).near(0.1);
 const S2: Pose = Pose::IDENTITY
     .rotated_x(Turn::from_degrees(-30))
     .rotated_y(Turn::from_degrees(-40))
@@ -109,7 +109,7 @@ const S3: Pose = Pose::IDENTITY
     .rotated_y(Turn::from_degrees(-25))
     .at(Vec3::lit(0.0, 0.0, -2.44));
 static SUN: [Light; 1] = [Light::directional(Vec3::lit(-0.4, -0.6, -0.7), [208, 208, 208])];
-static LIGHTS: Lights = Lights::new([40, 40, 40], &SUN);
+pub(crate) static LIGHTS: Lights = Lights::new([40, 40, 40], &SUN);
 
 /// A frame without depth.
 pub type Flat<'a> = Band<'a, Rgb565, NoDepth>;
@@ -161,6 +161,15 @@ pub const S1_GROUND_PIXELS: u32 = 11_360;
 pub const S2_PIXELS: u32 = 6_744;
 /// Pixels that s3 and s3_tex cover.
 pub const S3_PIXELS: u32 = 6_826;
+
+/// Bytes of the meshes and the texture of s1, and of those of all scenes: what of a program's flash is no code.
+#[must_use]
+pub fn data_bytes() -> [usize; 2] {
+    let texture = size_of_val(&TEXELS);
+    let [s1, others @ ..] = [&FLOOR, &GROUND, &CUBE, &TORUS_MESH, &TEXTURED_TORUS_MESH]
+        .map(|mesh| size_of_val(mesh.vertices()) + mesh.triangles().len() * size_of::<[u16; 3]>());
+    [texture + s1, texture + s1 + others.iter().sum::<usize>()]
+}
 
 #[cfg(test)]
 mod tests {

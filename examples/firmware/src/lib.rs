@@ -3,12 +3,15 @@
 //! driver of the OLED ([`ssd0323`]).
 //!
 //! The programs are `src/bin/oled` (LM3S6965EVB, Cortex-M3) and `src/bin/microbit` (Cortex-M0).
+//!
+//! What speed is judged on is of no board: the scenes of [`bench`](mod@bench) and, one kind of work each, of [`cost`].
 
 #![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 pub mod bench;
 pub mod checksum;
+pub mod cost;
 pub mod gray4;
 pub mod scene;
 pub mod ssd0323;

@@ -1,12 +1,8 @@
-//! The boards against the desktop: the programs run under `qemu-system-arm`, and have to print the
-//! checksums and to leave the picture that this machine computes.
-//!
-//! Needs QEMU and rustup's targets thumbv6m-none-eabi and thumbv7m-none-eabi, and fails without;
-//! `FIXEL_SKIP_BOARDS=1` skips it.
+//! Programs on boards that QEMU emulates: built, run, and looked into.
 
 use std::{
     env, fs,
-    io::{BufRead, BufReader, Read, Write},
+    io::{BufRead, BufReader, Write},
     net::{TcpListener, TcpStream},
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
@@ -15,46 +11,30 @@ use std::{
     time::{Duration, Instant},
 };
 
-use embedded_graphics::{
-    framebuffer::{Framebuffer, buffer_size},
-    image::GetPixel,
-    pixelcolor::{
-        Gray4,
-        raw::{BigEndian, RawU4},
-    },
-    prelude::*,
-};
-use fixel_firmware::{
-    checksum::Gray4Sum,
-    scene::{BAND_ROWS, FRAMES, MICROBIT, OLED, Scene},
-};
-
 /// A run takes a second; a hang must fail before anyone loses patience.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
-struct Board {
+pub(super) struct Board {
     /// QEMU's name of it.
-    machine: &'static str,
+    pub(super) machine: &'static str,
+    /// What else QEMU is told.
+    pub(super) options: &'static [&'static str],
     /// The program that is made for it.
-    program: &'static str,
-    target: &'static str,
+    pub(super) program: &'static str,
+    /// The package's features that the program needs.
+    pub(super) features: &'static str,
+    pub(super) target: &'static str,
     /// Bytes of RAM from 0x2000_0000.
-    ram: usize,
+    pub(super) ram: usize,
 }
 
-const LM3S6965EVB: Board =
-    Board { machine: "lm3s6965evb", program: "oled", target: "thumbv7m-none-eabi", ram: 64 << 10 };
-
-const MICROBIT_BOARD: Board =
-    Board { machine: "microbit", program: "microbit", target: "thumbv6m-none-eabi", ram: 16 << 10 };
-
 /// Where the pictures are left for a look.
-fn scratch() -> &'static Path {
+pub(super) fn scratch() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
 
 /// True when the boards are to be left out, which is said past the test harness's capture.
-fn skipped() -> bool {
+pub(super) fn skipped() -> bool {
     let skipped = env::var_os("FIXEL_SKIP_BOARDS").is_some_and(|value| value == "1");
     if skipped {
         let _ =
@@ -70,6 +50,7 @@ impl Board {
         let mut cargo = Command::new(env!("CARGO"));
         cargo
             .args(["build", "--release", "--locked", "--bin", self.program, "--target", self.target])
+            .args(["--features", self.features])
             .args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")])
             .arg("--target-dir")
             .arg(&directory);
@@ -100,12 +81,12 @@ impl Board {
         directory.join(self.target).join("release").join(self.program)
     }
 
-    fn start(&self, argument: Option<&str>) -> Emulator {
+    pub(super) fn start(&self, argument: Option<&str>) -> Emulator {
         Emulator::start(self, &self.build(), argument)
     }
 
     /// Lets the program end by itself and returns the lines that it printed.
-    fn run(&self) -> Vec<String> {
+    pub(super) fn run(&self) -> Vec<String> {
         let mut emulator = self.start(None);
         let lines = emulator.read_until_end();
         let status = emulator.wait();
@@ -114,7 +95,7 @@ impl Board {
     }
 
     /// Bytes of stack that a run has touched, of those that there are, from the runtime's stack painting.
-    fn stack(&self, emulator: &mut Emulator) -> (usize, usize) {
+    pub(super) fn stack(&self, emulator: &mut Emulator) -> (usize, usize) {
         let file = format!("{}.ram", self.program);
         emulator.execute(&format!(
             r#"{{"execute":"memsave","arguments":{{"val":536870912,"size":{},"filename":"{file}"}}}}"#,
@@ -139,7 +120,7 @@ impl Board {
 }
 
 /// A running QEMU, killed when dropped.
-struct Emulator {
+pub(super) struct Emulator {
     child: Child,
     printed: Receiver<String>,
     monitor: BufReader<TcpStream>,
@@ -159,6 +140,7 @@ impl Emulator {
         let mut child = Command::new("qemu-system-arm")
             .args(["-machine", board.machine, "-display", "none"])
             .args(["-serial", "none", "-monitor", "none"])
+            .args(board.options)
             .args(["-chardev", "stdio,id=printed,signal=off"])
             .args(["-semihosting-config", &semihosting])
             .args(["-qmp", &format!("tcp:127.0.0.1:{port}")])
@@ -200,7 +182,7 @@ impl Emulator {
     }
 
     /// The next line that the program prints, or `None` at its end.
-    fn read_line(&mut self) -> Option<String> {
+    pub(super) fn read_line(&mut self) -> Option<String> {
         let left = self.deadline.saturating_duration_since(Instant::now());
         match self.printed.recv_timeout(left) {
             Ok(line) => Some(line),
@@ -224,7 +206,7 @@ impl Emulator {
     }
 
     /// Has the monitor do a command to its end.
-    fn execute(&mut self, command: &str) {
+    pub(super) fn execute(&mut self, command: &str) {
         writeln!(self.monitor.get_mut(), "{command}").expect("the monitor listens");
         loop {
             let mut answer = String::new();
@@ -243,114 +225,4 @@ impl Drop for Emulator {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
-}
-
-/// A picture in memory in the display's own format.
-type Picture = Framebuffer<
-    Gray4,
-    RawU4,
-    BigEndian,
-    { OLED.width as usize },
-    { OLED.height as usize },
-    { buffer_size::<Gray4>(OLED.width as usize, OLED.height as usize) },
->;
-
-/// The lines of the `oled` program and its last picture, as this machine computes them.
-fn expected_oled() -> (Vec<String>, Picture) {
-    let scene = Scene::new(OLED);
-    let count = OLED.width as usize * BAND_ROWS;
-    let (mut pixels, mut depth) = (vec![0; count], vec![0; count]);
-    let mut picture = Picture::new();
-    let lines = (0..FRAMES)
-        .map(|frame| {
-            let Ok((rgb565, gray4)) = scene.show(frame, &mut pixels, &mut depth, &mut picture);
-            let mut sum = Gray4Sum::new();
-            sum.add(picture.bounding_box().points().map(|point| picture.pixel(point).expect("it is inside")));
-            assert_eq!(sum.finish(), gray4, "the checksum is that of what was drawn");
-            format!("frame {frame} rgb565 {rgb565:08X} gray4 {gray4:08X}")
-        })
-        .collect();
-    (lines, picture)
-}
-
-/// Width, height and RGB bytes of a binary PPM with one space or line feed between its numbers.
-fn read_ppm(path: &Path) -> (u32, u32, Vec<u8>) {
-    let mut file = BufReader::new(fs::File::open(path).expect("QEMU wrote the picture"));
-    let mut header = Vec::<u8>::new();
-    while header.iter().filter(|byte| byte.is_ascii_whitespace()).count() < 4 {
-        let mut byte = [0];
-        file.read_exact(&mut byte).expect("the header is whole");
-        header.push(byte[0]);
-    }
-    let header = String::from_utf8(header).expect("the header is text");
-    let fields = header.split_ascii_whitespace().collect::<Vec<_>>();
-    let ["P6", width, height, "255"] = *fields else { panic!("not a PPM of 8 bits: {header:?}") };
-    let mut bytes = Vec::new();
-    file.read_to_end(&mut bytes).expect("the picture is whole");
-    (width.parse().expect("a number"), height.parse().expect("a number"), bytes)
-}
-
-#[test]
-fn the_oled_program_prints_the_desktops_checksums() {
-    if skipped() {
-        return;
-    }
-    assert_eq!(LM3S6965EVB.run(), expected_oled().0);
-}
-
-#[test]
-fn the_oled_shows_the_desktops_picture() {
-    if skipped() {
-        return;
-    }
-    let (lines, expected) = expected_oled();
-    let mut emulator = LM3S6965EVB.start(Some("hold"));
-    for line in lines {
-        assert_eq!(emulator.read_line(), Some(line));
-    }
-    // The program prints a frame after its last byte is in the display's memory, then waits for ever.
-    emulator.execute(r#"{"execute":"screendump","arguments":{"filename":"oled.ppm"}}"#);
-    let (used, size) = LM3S6965EVB.stack(&mut emulator);
-    println!("oled: {used} bytes of a stack of {size} used");
-    assert!(used + 1024 <= size);
-
-    // QEMU draws each pixel as a square of 4×4, and level n as the grey 17·n.
-    const MAGNIFY: u32 = 4;
-    let path = scratch().join("oled.ppm");
-    let (width, height, shown) = read_ppm(&path);
-    assert_eq!((width, height), (OLED.width * MAGNIFY, OLED.height * MAGNIFY));
-    assert_eq!(shown.len(), (width * height * 3) as usize);
-    for (i, rgb) in (0..).zip(shown.chunks_exact(3)) {
-        let (x, y) = (i % width / MAGNIFY, i / width / MAGNIFY);
-        let level = expected.pixel(Point::new(x as i32, y as i32)).expect("it is inside");
-        assert_eq!(rgb, [level.luma() * 17; 3], "pixel ({x}, {y}) of {}", path.display());
-    }
-    println!("{} shows the picture", path.display());
-}
-
-#[test]
-fn the_microbit_program_prints_the_desktops_checksums() {
-    if skipped() {
-        return;
-    }
-    let scene = Scene::new(MICROBIT);
-    // The whole frame at once, where the board draws strips.
-    let count = (MICROBIT.width * MICROBIT.height) as usize;
-    let (mut pixels, mut depth) = (vec![0; count], vec![0; count]);
-    let expected = (0..FRAMES)
-        .map(|frame| {
-            let Ok(rgb565) =
-                scene.frame(frame, &mut pixels, &mut depth, |_| Ok::<_, core::convert::Infallible>(()));
-            format!("frame {frame} rgb565 {rgb565:08X}")
-        })
-        .collect::<Vec<_>>();
-    assert_eq!(MICROBIT_BOARD.run(), expected);
-
-    let mut emulator = MICROBIT_BOARD.start(Some("hold"));
-    for line in expected {
-        assert_eq!(emulator.read_line(), Some(line));
-    }
-    let (used, size) = MICROBIT_BOARD.stack(&mut emulator);
-    println!("microbit: {used} bytes of a stack of {size} used");
-    assert!(used + 1024 <= size);
 }

@@ -1,0 +1,176 @@
+//! The instructions that `bench`'s scenes take, against the table `counts.txt`: a change of speed is seen when it is made.
+
+use std::{
+    env,
+    fmt::Write as _,
+    fs,
+    io::{self, Write as _},
+    process::Command,
+};
+
+use super::emulator::{Board, skipped};
+
+const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/counts.txt");
+
+/// More than this is more than what another layout of the same code makes.
+const TOLERANCE_PERCENT: u64 = 2;
+
+const UPDATE: &str = "FIXEL_UPDATE_COUNTS=1 cargo test --test boards counts";
+
+/// The MPS2 boards run an instruction a nanosecond by `-icount`; the one with a Cortex-M3 runs Armv6-M code.
+const BOARDS: [Board; 2] =
+    [mps2("mps2-an385", "thumbv6m-none-eabi"), mps2("mps2-an386", "thumbv7em-none-eabihf")];
+
+const fn mps2(machine: &'static str, target: &'static str) -> Board {
+    let options = &["-icount", "shift=0"];
+    Board { machine, options, program: "bench", features: "mps2", target, ram: 4 << 20 }
+}
+
+/// A scene with the pixels that it covers and its instructions on each board.
+#[derive(Debug, PartialEq, Eq)]
+struct Row {
+    scene: String,
+    pixels: u64,
+    instructions: [u64; BOARDS.len()],
+}
+
+fn number(text: &str) -> u64 {
+    text.parse().unwrap_or_else(|_| panic!("{text:?} is not a number"))
+}
+
+/// What the boards print: `s1 pixels 12510 instructions 272080`.
+fn measured() -> Vec<Row> {
+    let mut rows = Vec::<Row>::new();
+    for (i, board) in BOARDS.iter().enumerate() {
+        for (scene, line) in board.run().iter().enumerate() {
+            let words = line.split_whitespace().collect::<Vec<_>>();
+            let [name, "pixels", pixels, "instructions", instructions] = *words else {
+                panic!("{}: {line:?} is not a scene's line", board.target);
+            };
+            if i == 0 {
+                rows.push(Row {
+                    scene: name.into(),
+                    pixels: number(pixels),
+                    instructions: [0; BOARDS.len()],
+                });
+            }
+            let row = &mut rows[scene];
+            assert_eq!((&*row.scene, row.pixels), (name, number(pixels)), "the boards draw the same scenes");
+            row.instructions[i] = number(instructions);
+        }
+    }
+    rows
+}
+
+fn rustc_version() -> String {
+    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let version = Command::new(rustc).arg("--version").output().expect("rustc runs").stdout;
+    // Number and no hash.
+    String::from_utf8_lossy(&version).split_whitespace().take(2).collect::<Vec<_>>().join(" ")
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut table = format!(
+        "# Instructions that a frame of each scene takes, counted under QEMU; `cargo test` compares. Rewritten by\n\
+         # {UPDATE}\n\
+         # Made with {}\n\
+         scene      pixels",
+        rustc_version()
+    );
+    for board in BOARDS {
+        let _ = write!(table, "  {:>21}", board.target);
+    }
+    for Row { scene, pixels, instructions } in rows {
+        let _ = write!(table, "\n{scene:10} {pixels:6}");
+        for instructions in instructions {
+            let _ = write!(table, "  {instructions:>21}");
+        }
+    }
+    table + "\n"
+}
+
+fn parsed(table: &str) -> Vec<Row> {
+    let mut lines = table.lines().filter(|line| !line.starts_with('#'));
+    let head = lines.next().expect("the table has a head").split_whitespace().collect::<Vec<_>>();
+    assert_eq!(head, ["scene", "pixels", BOARDS[0].target, BOARDS[1].target]);
+    lines
+        .map(|line| {
+            let words = line.split_whitespace().collect::<Vec<_>>();
+            let [scene, pixels, first, second] = *words else { panic!("{line:?} is not a row of the table") };
+            Row { scene: scene.into(), pixels: number(pixels), instructions: [number(first), number(second)] }
+        })
+        .collect()
+}
+
+/// What is wrong with a scene's count, if anything.
+fn judged(scene: &str, target: &str, before: u64, now: u64) -> Option<String> {
+    if now * 100 > before * (100 + TOLERANCE_PERCENT) {
+        Some(format!("{scene} on {target} got slower: {before} → {now} instructions"))
+    } else if now * 100 < before * (100 - TOLERANCE_PERCENT) {
+        Some(format!(
+            "{scene} on {target} got faster: {before} → {now} instructions; update the table, to keep what is won"
+        ))
+    } else {
+        None
+    }
+}
+
+#[test]
+fn the_counts_of_the_scenes_are_those_of_the_table() {
+    if skipped() {
+        return;
+    }
+    let now = measured();
+    if env::var_os("FIXEL_UPDATE_COUNTS").is_some_and(|value| value == "1") {
+        fs::write(TABLE, table(&now)).expect("the table can be written");
+    }
+    let text = fs::read_to_string(TABLE).expect("the table is in this package");
+    let before = parsed(&text);
+
+    let mut report = String::from("\nInstructions a frame, and the change against counts.txt:\n");
+    let mut wrong = Vec::new();
+    for row in &now {
+        let _ = write!(report, "{:10} {:6} px", row.scene, row.pixels);
+        let old = before.iter().find(|old| old.scene == row.scene);
+        if old.is_none_or(|old| old.pixels != row.pixels) {
+            wrong.push(format!("{} with {} px is not in the table", row.scene, row.pixels));
+        }
+        for (i, board) in BOARDS.iter().enumerate() {
+            let count = row.instructions[i];
+            let _ = write!(report, "  {} {count:>9}", board.target);
+            if let Some(old) = old.map(|old| old.instructions[i]) {
+                let _ = write!(report, " {:+6.2} %", (count as f64 / old as f64 - 1.0) * 100.0);
+                wrong.extend(judged(&row.scene, board.target, old, count));
+            }
+        }
+        report.push('\n');
+    }
+    for old in before.iter().filter(|old| now.iter().all(|row| row.scene != old.scene)) {
+        wrong.push(format!("{} is in the table, but not drawn", old.scene));
+    }
+    // Past the test harness's capture: the numbers are worth a look when all is well, too.
+    let _ = io::stderr().write_all(report.as_bytes());
+    assert!(
+        wrong.is_empty(),
+        "{}\n{report}The table was made with {}; this is {}. If the change is meant, in examples/firmware:\n    {UPDATE}",
+        wrong.join("\n"),
+        text.lines().find_map(|line| line.strip_prefix("# Made with ")).unwrap_or("some rustc"),
+        rustc_version(),
+    );
+}
+
+#[test]
+fn two_percent_are_no_change_and_more_are() {
+    for now in [98_000, 100_000, 102_000] {
+        assert_eq!(judged("s1", "a board", 100_000, now), None);
+    }
+    assert!(judged("s1", "a board", 100_000, 102_001).is_some_and(|what| what.contains("slower")));
+    assert!(judged("s1", "a board", 100_000, 97_999).is_some_and(|what| what.contains("faster")));
+}
+
+#[test]
+fn the_table_reads_as_it_is_written() {
+    let row = |scene: &str, pixels| Row { scene: scene.into(), pixels, instructions: [1, 23_456_789] };
+    let rows = [row("s1", 12_510), row("s1_ground", 7)];
+    assert_eq!(parsed(&table(&rows)), rows);
+}
