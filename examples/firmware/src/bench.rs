@@ -1,5 +1,7 @@
 //! The scenes by which speed and size are judged: 160×120 RGB565, a focal length of 80 pixels, the
 //! camera at the origin looking along −z, near = 0.1, a 64×64 texture, backs culled.
+//!
+//! What they are made of is public, so that `tests/peers` can draw the same with other libraries.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::prelude::*;
@@ -14,7 +16,7 @@ pub const SIZE: Size = Size::new(160, 120);
 pub const PIXELS: usize = 160 * 120;
 
 /// 64×64 texels of a brick wall with a border, so that a wrong repeat would show.
-static TEXELS: [u16; 4096] = wall();
+pub static TEXELS: [u16; 4096] = wall();
 pub(crate) static WALL: Texture = Texture::new(&TEXELS, 6, 6);
 
 const fn wall() -> [u16; 4096] {
@@ -38,7 +40,7 @@ const fn wall() -> [u16; 4096] {
 const QUAD: [[u16; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 /// s1, in half units: mesh positions reach to ±8.
-const FLOOR: Mesh = Mesh::new(
+pub const FLOOR: Mesh = Mesh::new(
     &[
         Vertex::new(-2.25, -0.725, -1.0).uv(0, 0),
         Vertex::new(2.25, -0.725, -1.0).uv(64, 0),
@@ -49,7 +51,7 @@ const FLOOR: Mesh = Mesh::new(
 );
 
 /// The ground, in eighths: x ±40, z +0.1 … −30, the texture 20 times across.
-const GROUND: Mesh = Mesh::new(
+pub const GROUND: Mesh = Mesh::new(
     &[
         Vertex::new(-5.0, -0.125, 0.0125).uv(-640, 0),
         Vertex::new(5.0, -0.125, 0.0125).uv(640, 0),
@@ -91,44 +93,63 @@ const fn cube_triangles() -> [[u16; 3]; 12] {
     triangles
 }
 
-const CUBE: Mesh = Mesh::new(FACES.as_flattened(), &cube_triangles());
+/// s2: ±1, each face the whole texture.
+pub const CUBE: Mesh = Mesh::new(FACES.as_flattened(), &cube_triangles());
 
-pub(crate) const CAMERA: Camera = Camera::focal(80.0, SIZE).near(0.1);
-const S2: Pose = Pose::IDENTITY
+/// The camera of all scenes but the ground's.
+pub const CAMERA: Camera = Camera::focal(80.0, SIZE).near(0.1);
+/// The ground's, pitched down 9.8°.
+pub const GROUND_CAMERA: Camera =
+    CAMERA.pose(Pose::IDENTITY.rotated_x(Turn::from_raw(1784u16.wrapping_neg())));
+/// Where the ground lies.
+pub const GROUND_POSE: Pose = Pose::IDENTITY.scaled_lit(8.0);
+/// How the cube stands.
+pub const S2: Pose = Pose::IDENTITY
     .rotated_x(Turn::from_degrees(-30))
     .rotated_y(Turn::from_degrees(-40))
     .at(Vec3::lit(0.0, 0.0, -2.62));
 
 static TORUS: Shape<500, 1000> = shapes::torus(1.0, 0.45, 25, 20);
 static TEXTURED_TORUS: Shape<546, 1000> = shapes::torus_textured(1.0, 0.45, 25, 20, [256, 64]);
-/// Checked once, by the compiler.
-static TORUS_MESH: Mesh = TORUS.mesh();
-static TEXTURED_TORUS_MESH: Mesh = TEXTURED_TORUS.mesh();
-const S3: Pose = Pose::IDENTITY
+/// s3's torus, checked once, by the compiler.
+pub static TORUS_MESH: Mesh = TORUS.mesh();
+/// s3_tex's torus.
+pub static TEXTURED_TORUS_MESH: Mesh = TEXTURED_TORUS.mesh();
+/// How the torus stands.
+pub const S3: Pose = Pose::IDENTITY
     .rotated_x(Turn::from_degrees(-50))
     .rotated_y(Turn::from_degrees(-25))
     .at(Vec3::lit(0.0, 0.0, -2.44));
-static SUN: [Light; 1] = [Light::directional(Vec3::lit(-0.4, -0.6, -0.7), [208, 208, 208])];
-pub(crate) static LIGHTS: Lights = Lights::new([40, 40, 40], &SUN);
+/// Where the sun shines to.
+pub const SUN_DIRECTION: Vec3 = Vec3::lit(-0.4, -0.6, -0.7);
+/// What arrives from it where a surface faces it.
+pub const SUN_COLOR: [u8; 3] = [208; 3];
+/// What arrives everywhere.
+pub const AMBIENT: [u8; 3] = [40; 3];
+static SUN: [Light; 1] = [Light::directional(SUN_DIRECTION, SUN_COLOR)];
+pub(crate) static LIGHTS: Lights = Lights::new(AMBIENT, &SUN);
 
 /// A frame without depth.
 pub type Flat<'a> = Band<'a, Rgb565, NoDepth>;
 /// A frame with depth.
 pub type Deep<'a> = Band<'a, Rgb565, Depth16>;
 
+/// Where the floor lies, turned about the view axis.
+#[must_use]
+pub const fn floor_pose(roll: Turn) -> Pose {
+    Pose::IDENTITY.rotated_z(roll).scaled_lit(2.0)
+}
+
 /// s1: the floor, turned about the view axis.
 #[inline(always)]
 pub fn s1(roll: Turn, frame: &mut Flat<'_>) {
-    let pose = Pose::IDENTITY.rotated_z(roll).scaled_lit(2.0);
-    CAMERA.draw(&FLOOR, &pose, &Material::textured(&WALL), frame);
+    CAMERA.draw(&FLOOR, &floor_pose(roll), &Material::textured(&WALL), frame);
 }
 
 /// s1_ground: the ground of a game, clipped by the near plane and beyond every edge of the screen.
 #[inline(always)]
 pub fn s1_ground(frame: &mut Flat<'_>) {
-    // 9.8°
-    let camera = CAMERA.pose(Pose::IDENTITY.rotated_x(-Turn::from_raw(1784)));
-    camera.draw(&GROUND, &Pose::IDENTITY.scaled_lit(8.0), &Material::textured(&WALL), frame);
+    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Material::textured(&WALL), frame);
 }
 
 /// s2: the cube.
