@@ -46,18 +46,6 @@ pub(crate) trait Fill<const N: usize> {
             }
         }
     }
-
-    /// As [`Fill::bent`] a number of pixels that the compiler knows.
-    #[inline]
-    fn block<const LENGTH: usize>(
-        &self,
-        pixels: &mut [Self::Word; LENGTH],
-        at: [i32; N],
-        step: [i32; N],
-        bend: [i32; N],
-    ) {
-        self.bent(pixels, at, step, bend);
-    }
 }
 
 /// Pixel by pixel.
@@ -72,7 +60,7 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
     }
 }
 
-/// Texels of a texture that repeats, u and v packed in one word.
+/// Texels. Of a texture that repeats u and v are packed in one word.
 ///
 /// For 2^a × 2^b texels the lower half of the word holds u with a integer and 16 − a fraction bits, the upper half v with b
 /// and 16 − b: one addition steps both, and both repeat by themselves. Masking leaves the integer bits, and one
@@ -83,91 +71,164 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
 /// ```
 ///
 /// With the number of texels an array's, the compiler sees that the index cannot be outside it: 9 cycles a pixel on a
-/// Cortex-M0+ where a bounds check would make it 20.
+/// Cortex-M0+ where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and whatever has as many.
 ///
-/// A carry from u moves v by its last bit; a step is cut to its last bit towards zero. So a run is at most 2^(11 − max(a, b))
-/// long before it starts anew from 32 bits, which keeps it within 1/32 texel.
-pub(crate) struct Texels<'a, F, const COUNT: usize> {
-    texels: &'a [u16; COUNT],
-    log2: [u32; 2],
-    mask: u32,
-    multiplier: u32,
+/// A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So runs are so short, before they
+/// start anew from 32 bits, that all of that is 1/16 texel at most.
+pub(crate) struct Texels<'a, F> {
+    texture: &'a Texture<'a>,
+    is_packed: bool,
     format: PhantomData<F>,
 }
 
-impl<'a, F: PixelFormat, const COUNT: usize> Texels<'a, F, COUNT> {
-    /// `None` for a texture of another size, with a side of one texel, of more than 2⁸, or less than 2^`scale_log2`.
+impl<'a, F: PixelFormat> Texels<'a, F> {
     #[inline]
-    pub(crate) fn new(texture: &Texture<'a>, scale_log2: u32) -> Option<Self> {
-        let log2 = texture.log2();
-        let [a, b] = log2;
-        let texels = texture.texels().first_chunk::<COUNT>()?;
-        let sides = scale_log2.max(1)..=8;
-        if texture.texels().len() != COUNT || !sides.contains(&a) || !sides.contains(&b) {
-            return None;
-        }
-        let mask = !0 << (32 - b) | ((1 << a) - 1) << (16 - a);
-        Some(Self { texels, log2, mask, multiplier: 1 + (1 << (16 - b)), format: PhantomData })
+    pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32) -> Self {
+        Self { texture, is_packed: texture.is_packable(scale_log2), format: PhantomData }
     }
 
+    /// Pixels along packed coordinates: at most 32, or 31 if `BENT`.
     #[inline]
-    fn texel(&self, packed: u32) -> F::Word {
-        let index = (packed & self.mask).wrapping_mul(self.multiplier) >> (32 - COUNT.trailing_zeros());
-        F::rgb565(self.texels[index as usize])
+    fn run<const BENT: bool>(&self, pixels: &mut [F::Word], packed: u32, step: u32, bend: u32) {
+        let texels = self.texture.texels();
+        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
+            self.run_sized::<0x1000, BENT>(pixels, texels, packed, step, bend);
+        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
+            self.run_sized::<0x400, BENT>(pixels, texels, packed, step, bend);
+        } else {
+            self.run_checked(pixels, packed, step, bend);
+        }
+    }
+
+    /// In straight lines of code, without a loop: of one the compiler would keep multiples of `step` and `bend` in memory.
+    #[inline]
+    fn run_sized<const COUNT: usize, const BENT: bool>(
+        &self,
+        pixels: &mut [F::Word],
+        texels: &[u16; COUNT],
+        packed: u32,
+        step: u32,
+        bend: u32,
+    ) {
+        let [mask, multiplier] = self.texture.mask_and_multiplier();
+        let mut line = Line { texels, mask, multiplier, packed, step, bend };
+        let (sixteens, rest) = pixels.as_chunks_mut();
+        if BENT {
+            if let Some(sixteen) = sixteens.first_mut() {
+                line.draw::<F, 16, BENT>(sixteen);
+            }
+        } else {
+            for sixteen in sixteens {
+                line.draw::<F, 16, BENT>(sixteen);
+            }
+        }
+        let (eights, rest) = rest.as_chunks_mut();
+        if let Some(eight) = eights.first_mut() {
+            line.draw::<F, 8, BENT>(eight);
+        }
+        let (fours, rest) = rest.as_chunks_mut();
+        if let Some(four) = fours.first_mut() {
+            line.draw::<F, 4, BENT>(four);
+        }
+        let (twos, rest) = rest.as_chunks_mut();
+        if let Some(two) = twos.first_mut() {
+            line.draw::<F, 2, BENT>(two);
+        }
+        if let Some(one) = rest.as_chunks_mut().0.first_mut() {
+            line.draw::<F, 1, BENT>(one);
+        }
+    }
+
+    /// Of any size.
+    #[inline(never)]
+    fn run_checked(&self, pixels: &mut [F::Word], mut packed: u32, mut step: u32, bend: u32) {
+        let ([mask, multiplier], texels) = (self.texture.mask_and_multiplier(), self.texture.texels());
+        let shift = 32 - texels.len().trailing_zeros();
+        for pixel in pixels {
+            let index = (packed & mask).wrapping_mul(multiplier) >> (shift & 31);
+            *pixel = F::rgb565(texels.get(index as usize).copied().unwrap_or(0));
+            packed = packed.wrapping_add(step);
+            step = step.wrapping_add(bend);
+        }
     }
 }
 
-impl<F: PixelFormat, const COUNT: usize> Fill<2> for Texels<'_, F, COUNT> {
+/// Pixels to come.
+struct Line<'a, const COUNT: usize> {
+    texels: &'a [u16; COUNT],
+    mask: u32,
+    multiplier: u32,
+    packed: u32,
+    step: u32,
+    bend: u32,
+}
+
+impl<const COUNT: usize> Line<'_, COUNT> {
+    #[inline]
+    fn draw<F: PixelFormat, const LENGTH: usize, const BENT: bool>(&mut self, pixels: &mut [F::Word; LENGTH]) {
+        for pixel in pixels {
+            let index = (self.packed & self.mask).wrapping_mul(self.multiplier) >> (32 - COUNT.trailing_zeros());
+            *pixel = F::rgb565(self.texels[index as usize]);
+            self.packed = self.packed.wrapping_add(self.step);
+            if BENT {
+                self.step = self.step.wrapping_add(self.bend);
+            }
+        }
+    }
+}
+
+impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     type Word = F::Word;
 
     #[inline]
     fn longest(&self) -> i32 {
-        if self.log2[0] > 6 || self.log2[1] > 6 { 8 } else { 16 }
+        let [a, b] = self.texture.log2();
+        if a > 6 || b > 6 { 8 } else { 16 }
     }
 
     #[inline]
     fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
-        value >> (self.log2[i].wrapping_sub(scale_log2) & 31)
+        if self.is_packed {
+            value >> (self.texture.log2()[i].wrapping_sub(scale_log2) & 31)
+        } else {
+            value << scale_log2
+        }
     }
 
     #[inline]
     fn pixel(&self, [u, v]: [i32; 2]) -> F::Word {
-        self.texel(packed([u >> self.log2[0], v >> self.log2[1]]))
+        F::rgb565(self.texture.fetch(u >> 16, v >> 16))
     }
 
     #[inline]
     fn run_long(&self, pixels: &mut [F::Word], [mut u, mut v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
-        let [a, b] = self.log2;
-        let log2 = 11 - a.max(b).max(6);
-        let towards_zero = |step: i32, log2: u32| (step + ((step >> 31) & ((1 << log2) - 1))) >> log2;
-        let step = packed_step([towards_zero(u_step, a), towards_zero(v_step, b)]);
+        let [a, b] = self.texture.log2();
+        if !self.is_packed {
+            return self.bent(pixels, [u, v], [u_step, v_step], [0; 2]);
+        }
+        let log2 = if a > 6 || b > 6 { 3 } else { 5 };
+        let shifted = |step: i32, log2: u32| (step + ((step >> 31) & ((1 << log2) - 1))) >> log2;
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         for block in pixels.chunks_mut(1 << log2) {
-            let mut packed = packed([u >> a, v >> b]).wrapping_add((u_step as u32 >> 31) << 16);
-            let (fours, rest) = block.as_chunks_mut::<4>();
-            for four in fours {
-                for pixel in four {
-                    *pixel = self.texel(packed);
-                    packed = packed.wrapping_add(step);
-                }
-            }
-            for pixel in rest {
-                *pixel = self.texel(packed);
-                packed = packed.wrapping_add(step);
-            }
+            let packed = packed([u >> a, v >> b]).wrapping_add((u_step as u32 >> 31) << 16);
+            self.run::<false>(block, packed, step, 0);
             (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
         }
     }
 
     #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2], bend: [i32; 2]) {
-        // A negative step of u borrows from v where u starts anew: lend it the last bit.
-        let falls = step[0].wrapping_mul(2).wrapping_add(bend[0]) as u32 >> 31;
-        let mut packed = packed(at).wrapping_add(falls << 16);
-        let (mut step, bend) = (packed_step(step), packed_step(bend));
+        if self.is_packed {
+            // A negative step of u borrows from v where u starts anew: lend it the last bit.
+            let falls = step[0].wrapping_mul(2).wrapping_add(bend[0]) as u32 >> 31;
+            let packed = packed(at).wrapping_add(falls << 16);
+            return self.run::<true>(pixels, packed, packed_step(step), packed_step(bend));
+        }
+        let ([mut u, mut v], [mut u_step, mut v_step]) = (at, step);
         for pixel in pixels {
-            *pixel = self.texel(packed);
-            packed = packed.wrapping_add(step);
-            step = step.wrapping_add(bend);
+            *pixel = self.pixel([u, v]);
+            (u, v) = (u.wrapping_add(u_step), v.wrapping_add(v_step));
+            (u_step, v_step) = (u_step.wrapping_add(bend[0]), v_step.wrapping_add(bend[1]));
         }
     }
 }

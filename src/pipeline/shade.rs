@@ -339,6 +339,15 @@ impl Span<'_> {
             }
             return;
         }
+        if walk.is_level(left) {
+            let (reciprocal, zeros) = (short(walk.normalised()), walk.zeros);
+            let (mut at, mut step) = ([0; N], [0; N]);
+            for (i, attribute) in attributes.iter().enumerate() {
+                (at[i], step[i]) =
+                    attribute.level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
+            }
+            return fill.run_long(pixels, at, step);
+        }
         // Where q changes by half of itself within a pixel, at every pixel.
         let least = walk.least(left);
         let longest = if walk.q_step.unsigned_abs() > least >> 1 { 1 } else { fill.longest() };
@@ -356,14 +365,6 @@ impl Span<'_> {
                     let at = core::array::from_fn(|i| next[i] << attributes[i].scale_log2);
                     return pixels.iter_mut().for_each(|pixel| *pixel = fill.pixel(at));
                 }
-                if walk.is_level(left) {
-                    let mut step = [0; N];
-                    for i in 0..N {
-                        (next[i], step[i]) =
-                            attributes[i].level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
-                    }
-                    return fill.run_long(pixels, next, step);
-                }
             }
             for i in 0..N {
                 next[i] = fill.in_units(i, next[i], attributes[i].scale_log2);
@@ -371,31 +372,27 @@ impl Span<'_> {
             if length > 0 {
                 left -= length;
                 let bending = -(slope + next_slope);
-                pixels = match length {
-                    16 if left > 0 => block::<4, 16, N, L>(fill, pixels, &at, &next, bending),
-                    8 if left > 0 => block::<3, 8, N, L>(fill, pixels, &at, &next, bending),
-                    _ => {
-                        let count = (length + i32::from(left == 0)) as usize;
-                        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count)
-                        else {
-                            return;
-                        };
-                        let (mut step, mut bend) = ([0; N], [0; N]);
-                        let inverse = u32::from(INVERSES[length as usize & 31]);
-                        for i in 0..N {
-                            let rise = next[i].wrapping_sub(at[i]);
-                            let mean = towards_zero(mul_16(rise, inverse));
-                            bend[i] = towards_zero(mul_16_signed(mean << 1, bending));
-                            let straight = rise.wrapping_sub(bend[i].wrapping_mul(length * (length - 1) / 2));
-                            step[i] = towards_zero(mul_16(straight, inverse));
+                let (mut step, mut bend) = ([0; N], [0; N]);
+                for i in 0..N {
+                    let rise = next[i].wrapping_sub(at[i]);
+                    (step[i], bend[i]) = match length {
+                        16 => bent(rise, 16, bending, |rise| shifted::<4>(rise)),
+                        8 => bent(rise, 8, bending, |rise| shifted::<3>(rise)),
+                        _ => {
+                            let inverse = u32::from(INVERSES[length as usize & 31]);
+                            bent(rise, length, bending, |rise| towards_zero(mul_16(rise, inverse)))
                         }
-                        fill.bent(run, at, step, bend);
-                        rest
-                    }
+                    };
+                }
+                let count = (length + i32::from(left == 0)) as usize;
+                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
+                    return;
                 };
+                fill.bent(run, at, step, bend);
                 if left == 0 {
                     return;
                 }
+                pixels = rest;
             }
             (at, slope) = (next, next_slope);
             let by_slope = lengths[(slope.unsigned_abs() >> 8).min(63) as usize];
@@ -405,28 +402,18 @@ impl Span<'_> {
     }
 }
 
-/// 2^`LOG2` pixels on the quadratic through both ends on which u′ changes as much as it should from one to the other, by
-/// −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All is cut towards zero, so that no pixel lies beyond `next`.
+/// The first step and what is added to it each time, on the quadratic through both ends on which u′ changes as much as it should
+/// from one to the other, by −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All is cut towards zero, so that no pixel lies beyond the end.
 #[inline]
-fn block<'a, const LOG2: u32, const LENGTH: usize, const N: usize, L: Fill<N>>(
-    fill: &L,
-    pixels: &'a mut [L::Word],
-    at: &[i32; N],
-    next: &[i32; N],
-    bending: i32,
-) -> &'a mut [L::Word] {
-    let Some((run, rest)) = pixels.split_first_chunk_mut::<LENGTH>() else {
-        return &mut [];
-    };
-    let shifted = |value: i32| value.wrapping_add_unsigned((value >> 31) as u32 >> (32 - LOG2)) >> LOG2;
-    let (mut step, mut bend) = ([0; N], [0; N]);
-    for i in 0..N {
-        let rise = next[i].wrapping_sub(at[i]);
-        bend[i] = towards_zero(mul_16_signed(shifted(rise) << 1, bending));
-        step[i] = shifted(rise.wrapping_sub(bend[i].wrapping_mul((LENGTH * (LENGTH - 1) / 2) as i32)));
-    }
-    fill.block(run, *at, step, bend);
-    rest
+fn bent(rise: i32, length: i32, bending: i32, divide: impl Fn(i32) -> i32) -> (i32, i32) {
+    let bend = towards_zero(mul_16_signed(divide(rise) << 1, bending));
+    (divide(rise.wrapping_sub(bend.wrapping_mul(length * (length - 1) / 2))), bend)
+}
+
+/// A rise divided by 2^`LOG2`.
+#[inline]
+fn shifted<const LOG2: u32>(rise: i32) -> i32 {
+    rise.wrapping_add_unsigned((rise >> 31) as u32 >> (32 - LOG2)) >> LOG2
 }
 
 /// Of a product rounded down: one more if it is negative.

@@ -1,6 +1,6 @@
 //! Materials: the shaders that come with the crate.
 
-use super::{Lights, Texture, Wrap};
+use super::{Lights, Texture};
 use crate::math::Pose;
 use crate::pipeline::{
     Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Texels, Varying,
@@ -180,19 +180,7 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => pixels.fill(F::rgb565(*color)),
             (Surface::Textured(texture), None) => {
-                // Sizes with loops of their own, to which the bounds check is none.
-                if texture.wrapping() == Wrap::Repeat && !Q::EVERY_PIXEL {
-                    if let Some(texels) = Texels::<F, 0x1000>::new(texture, self.texture_scale.into()) {
-                        return span.fill::<Q, 2, _>(pixels, &texels);
-                    }
-                    if let Some(texels) = Texels::<F, 0x400>::new(texture, self.texture_scale.into()) {
-                        return span.fill::<Q, 2, _>(pixels, &texels);
-                    }
-                    if let Some(texels) = Texels::<F, 0x4000>::new(texture, self.texture_scale.into()) {
-                        return span.fill::<Q, 2, _>(pixels, &texels);
-                    }
-                }
-                span.shade::<Q, F::Word, 2>(pixels, |[u, v]| F::rgb565(texture.fetch(u >> 16, v >> 16)));
+                span.fill::<Q, 2, _>(pixels, &Texels::<F>::new(texture, self.texture_scale.into()));
             }
             (Surface::Textured(texture), Some(_)) if span.is_gray() => {
                 span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {

@@ -37,6 +37,9 @@ pub struct Texture<'a> {
     log2_width: u8,
     log2_height: u8,
     wrap: Wrap,
+    /// For packed coordinates, see [`Texels`](crate::pipeline::Texels).
+    mask: u32,
+    multiplier: u32,
 }
 
 /// The largest log₂ of a side.
@@ -70,7 +73,14 @@ impl<'a> Texture<'a> {
         if texels.len() != expected {
             return Err(TextureError::Length { expected, found: texels.len() });
         }
-        Ok(Self { texels, log2_width: log2_width as u8, log2_height: log2_height as u8, wrap: Wrap::Repeat })
+        Ok(Self {
+            texels,
+            log2_width: log2_width as u8,
+            log2_height: log2_height as u8,
+            wrap: Wrap::Repeat,
+            mask: (0xffff_0000 << (16 - log2_height)) | (((1 << log2_width) - 1) << (16 - log2_width)),
+            multiplier: 1 + (1 << (16 - log2_height)),
+        })
     }
 
     /// The same texels with another behaviour outside the borders.
@@ -94,8 +104,23 @@ impl<'a> Texture<'a> {
         self.texels
     }
 
-    pub(crate) const fn wrapping(&self) -> Wrap {
-        self.wrap
+    /// What leaves of packed coordinates their integer bits, and what brings those side by side.
+    pub(crate) const fn mask_and_multiplier(&self) -> [u32; 2] {
+        [self.mask, self.multiplier]
+    }
+
+    /// Whether coordinates times 2^`scale_log2` fit 16 bits each and repeat by themselves: sides of 2 … 256 texels, of
+    /// at least 2^`scale_log2`.
+    #[inline]
+    pub(crate) const fn is_packable(&self, scale_log2: u32) -> bool {
+        let (a, b) = (self.log2_width as u32, self.log2_height as u32);
+        matches!(self.wrap, Wrap::Repeat)
+            && a >= 1
+            && b >= 1
+            && a <= 8
+            && b <= 8
+            && a >= scale_log2
+            && b >= scale_log2
     }
 
     /// The texel at whole texel coordinates of any size, repeated.
