@@ -112,15 +112,19 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     ) {
         let [mask, multiplier] = self.texture.mask_and_multiplier();
         let mut line = Line { texels, mask, multiplier, packed, step, bend };
+        if !BENT {
+            let (fours, rest) = pixels.as_chunks_mut();
+            for four in fours {
+                line.draw::<F, 4, BENT>(four);
+            }
+            for one in rest.as_chunks_mut().0 {
+                line.draw::<F, 1, BENT>(one);
+            }
+            return;
+        }
         let (sixteens, rest) = pixels.as_chunks_mut();
-        if BENT {
-            if let Some(sixteen) = sixteens.first_mut() {
-                line.draw::<F, 16, BENT>(sixteen);
-            }
-        } else {
-            for sixteen in sixteens {
-                line.draw::<F, 16, BENT>(sixteen);
-            }
+        if let Some(sixteen) = sixteens.first_mut() {
+            line.draw::<F, 16, BENT>(sixteen);
         }
         let (eights, rest) = rest.as_chunks_mut();
         if let Some(eight) = eights.first_mut() {
