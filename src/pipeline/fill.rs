@@ -112,33 +112,15 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     ) {
         let [mask, multiplier] = self.texture.mask_and_multiplier();
         let mut line = Line { texels, mask, multiplier, packed, step, bend };
-        if !BENT {
-            let (fours, rest) = pixels.as_chunks_mut();
-            for four in fours {
-                line.draw::<F, 4, BENT>(four);
+        let (fours, rest) = pixels.as_chunks_mut();
+        for four in fours {
+            if BENT {
+                // The compiler would keep multiples of it in memory.
+                line.bend = core::hint::black_box(bend);
             }
-            for one in rest.as_chunks_mut().0 {
-                line.draw::<F, 1, BENT>(one);
-            }
-            return;
-        }
-        let (sixteens, rest) = pixels.as_chunks_mut();
-        if let Some(sixteen) = sixteens.first_mut() {
-            line.draw::<F, 16, BENT>(sixteen);
-        }
-        let (eights, rest) = rest.as_chunks_mut();
-        if let Some(eight) = eights.first_mut() {
-            line.draw::<F, 8, BENT>(eight);
-        }
-        let (fours, rest) = rest.as_chunks_mut();
-        if let Some(four) = fours.first_mut() {
             line.draw::<F, 4, BENT>(four);
         }
-        let (twos, rest) = rest.as_chunks_mut();
-        if let Some(two) = twos.first_mut() {
-            line.draw::<F, 2, BENT>(two);
-        }
-        if let Some(one) = rest.as_chunks_mut().0.first_mut() {
+        for one in rest.as_chunks_mut().0 {
             line.draw::<F, 1, BENT>(one);
         }
     }
@@ -169,9 +151,13 @@ struct Line<'a, const COUNT: usize> {
 
 impl<const COUNT: usize> Line<'_, COUNT> {
     #[inline]
-    fn draw<F: PixelFormat, const LENGTH: usize, const BENT: bool>(&mut self, pixels: &mut [F::Word; LENGTH]) {
+    fn draw<F: PixelFormat, const LENGTH: usize, const BENT: bool>(
+        &mut self,
+        pixels: &mut [F::Word; LENGTH],
+    ) {
         for pixel in pixels {
-            let index = (self.packed & self.mask).wrapping_mul(self.multiplier) >> (32 - COUNT.trailing_zeros());
+            let index =
+                (self.packed & self.mask).wrapping_mul(self.multiplier) >> (32 - COUNT.trailing_zeros());
             *pixel = F::rgb565(self.texels[index as usize]);
             self.packed = self.packed.wrapping_add(self.step);
             if BENT {

@@ -343,8 +343,7 @@ impl Span<'_> {
             let (reciprocal, zeros) = (short(walk.normalised()), walk.zeros);
             let (mut at, mut step) = ([0; N], [0; N]);
             for (i, attribute) in attributes.iter().enumerate() {
-                (at[i], step[i]) =
-                    attribute.level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
+                (at[i], step[i]) = attribute.level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
             }
             return fill.run_long(pixels, at, step);
         }
