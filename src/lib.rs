@@ -94,7 +94,7 @@ pub use pipeline::{
 };
 pub use scene::{
     Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,
-    TextureError, Vertex, Wrap, shapes, texels,
+    TextureError, Textured, Vertex, Wrap, shapes, texels,
 };
 pub use target::{Band, BigEndian, Depth16, DepthFormat, NoDepth, PixelFormat, TargetError};
 

@@ -200,6 +200,88 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     }
 }
 
+/// A [`Material`] that is a texture, and can be nothing else: what a program links that draws with no other is a third of
+/// what it is with [`Material`], which has loops for every surface.
+///
+/// ```
+/// use fixel::{Material, Texture, Textured};
+/// static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1);
+/// let checks = Textured::new(&CHECKS).texture_scale(2); // draws as Material::textured(&CHECKS).texture_scale(2)
+/// # let _ = checks;
+/// ```
+#[derive(Debug)]
+pub struct Textured<'a, Q = QuarterPixel> {
+    texture: Texture<'a>,
+    cull: Cull,
+    texture_scale: u8,
+    quality: PhantomData<fn() -> Q>,
+}
+
+impl<Q> Clone for Textured<'_, Q> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<Q> Copy for Textured<'_, Q> {}
+
+impl<'a> Textured<'a> {
+    /// At the vertices' texture coordinates; backs are left out.
+    #[must_use]
+    pub const fn new(texture: &Texture<'a>) -> Self {
+        Self { texture: *texture, cull: Cull::Back, texture_scale: 0, quality: PhantomData }
+    }
+}
+
+impl<'a, Q> Textured<'a, Q> {
+    /// The same in another quality.
+    #[must_use]
+    pub const fn quality<P>(self) -> Textured<'a, P> {
+        Textured {
+            texture: self.texture,
+            cull: self.cull,
+            texture_scale: self.texture_scale,
+            quality: PhantomData,
+        }
+    }
+
+    /// The same with other sides left out.
+    #[must_use]
+    pub const fn cull(self, cull: Cull) -> Self {
+        Self { cull, ..self }
+    }
+
+    /// As [`Material::texture_scale`].
+    #[must_use]
+    pub const fn texture_scale(self, log2: u8) -> Self {
+        Self { texture_scale: if log2 > 8 { 8 } else { log2 }, ..self }
+    }
+}
+
+impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
+    type Quality = Q;
+
+    fn cull(&self) -> Cull {
+        self.cull
+    }
+
+    fn inputs(&self) -> Inputs {
+        Inputs::Uv
+    }
+
+    fn texture_scale(&self) -> u32 {
+        self.texture_scale.into()
+    }
+
+    fn color(&self, varying: &Varying) -> F::Word {
+        F::rgb565(self.texture.fetch(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
+    }
+
+    fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
+        span.fill::<Q, 2, _>(pixels, &Texels::<F>::new(&self.texture, self.texture_scale.into()));
+    }
+}
+
 /// Channels in I16F16, 0 … 255.996, which `shade` promises.
 #[inline]
 fn gouraud<F: PixelFormat>(channels: [i32; 3]) -> F::Word {

@@ -10,7 +10,7 @@ mod texture;
 
 pub use camera::{Camera, Projected};
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
-pub use material::Material;
+pub use material::{Material, Textured};
 pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError, Vertex};
 pub(crate) use projection::{Projection, Viewport};

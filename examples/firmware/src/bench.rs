@@ -6,7 +6,7 @@
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::prelude::*;
 use fixel::{
-    Light, Lights,
+    Light, Lights, Textured,
     shapes::{self, Shape},
 };
 
@@ -143,19 +143,19 @@ pub const fn floor_pose(roll: Turn) -> Pose {
 /// s1: the floor, turned about the view axis.
 #[inline(always)]
 pub fn s1(roll: Turn, frame: &mut Flat<'_>) {
-    CAMERA.draw(&FLOOR, &floor_pose(roll), &Material::textured(&WALL), frame);
+    CAMERA.draw(&FLOOR, &floor_pose(roll), &Textured::new(&WALL), frame);
 }
 
 /// s1_ground: the ground of a game, clipped by the near plane and beyond every edge of the screen.
 #[inline(always)]
 pub fn s1_ground(frame: &mut Flat<'_>) {
-    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Material::textured(&WALL), frame);
+    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Textured::new(&WALL), frame);
 }
 
 /// s2: the cube.
 #[inline(always)]
 pub fn s2(frame: &mut Deep<'_>) {
-    CAMERA.draw(&CUBE, &S2, &Material::textured(&WALL), frame);
+    CAMERA.draw(&CUBE, &S2, &Textured::new(&WALL), frame);
 }
 
 /// s3: the torus, Gouraud shaded.
