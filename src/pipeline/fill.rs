@@ -197,11 +197,9 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             return self.bent(pixels, [u, v], [u_step, v_step], [0; 2]);
         }
         let log2 = if a > 6 || b > 6 { 3 } else { 5 };
-        let shifted = |step: i32, log2: u32| (step + ((step >> 31) & ((1 << log2) - 1))) >> log2;
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         for block in pixels.chunks_mut(1 << log2) {
-            let packed = packed([u >> a, v >> b]).wrapping_add((u_step as u32 >> 31) << 16);
-            self.run::<false>(block, packed, step, 0);
+            self.run::<false>(block, packed_from([u >> a, v >> b], u_step), step, 0);
             (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
         }
     }
@@ -209,9 +207,7 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2], bend: [i32; 2]) {
         if self.is_packed {
-            // A negative step of u borrows from v where u starts anew: lend it the last bit.
-            let falls = step[0].wrapping_mul(2).wrapping_add(bend[0]) as u32 >> 31;
-            let packed = packed(at).wrapping_add(falls << 16);
+            let packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
             return self.run::<true>(pixels, packed, packed_step(step), packed_step(bend));
         }
         let ([mut u, mut v], [mut u_step, mut v_step]) = (at, step);
@@ -223,13 +219,21 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     }
 }
 
+/// The place of a run, whose first step of u is negative or not.
 #[inline]
-fn packed([u, v]: [i32; 2]) -> u32 {
-    (v as u32) << 16 | (u as u32 & 0xffff)
+pub(super) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
+    // A negative step of u borrows from v where u starts anew: lend it the last bit.
+    ((v as u32) << 16 | (u as u32 & 0xffff)).wrapping_add((u_step as u32 >> 31) << 16)
 }
 
 /// A difference: u may be negative, and then borrows from v.
 #[inline]
-fn packed_step([u, v]: [i32; 2]) -> u32 {
+pub(super) fn packed_step([u, v]: [i32; 2]) -> u32 {
     ((v as u32) << 16).wrapping_add(u as u32)
+}
+
+/// A step without its last bits, cut towards zero.
+#[inline]
+pub(super) fn shifted(step: i32, log2: u32) -> i32 {
+    (step + ((step >> 31) & ((1 << log2) - 1))) >> log2
 }

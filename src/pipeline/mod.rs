@@ -8,6 +8,7 @@
 mod attribute;
 mod clip;
 mod color;
+mod colors;
 mod draw;
 mod fill;
 mod setup;
@@ -20,6 +21,7 @@ mod transform;
 
 pub use clip::ScreenVertex;
 pub use color::Coloring;
+pub(crate) use colors::{Colors, Gray, LitTexels, RedBlueGreen, color, lit};
 pub use draw::{RangeError, draw_triangle};
 pub(crate) use draw::{draw, project};
 pub(crate) use fill::Texels;

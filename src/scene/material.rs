@@ -3,7 +3,8 @@
 use super::{Lights, Texture};
 use crate::math::Pose;
 use crate::pipeline::{
-    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, Shader, Span, Texels, Varying,
+    Affine, Coloring, Colors, Cull, Exact, Gray, Inputs, LitTexels, Quality, QuarterPixel, RedBlueGreen,
+    Shader, Span, Texels, Varying, color, lit,
 };
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -167,12 +168,12 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
 
     fn color(&self, varying: &Varying) -> F::Word {
         let (u, v) = (varying.u.to_bits() >> 16, varying.v.to_bits() >> 16);
-        let channels = varying.color.map(|channel| channel.to_bits());
+        let channels = whole(varying.color.map(|channel| channel.to_bits()));
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => F::rgb565(*color),
             (Surface::Textured(texture), None) => F::rgb565(texture.fetch(u, v)),
             (Surface::Textured(texture), Some(_)) => lit::<F>(texture.fetch(u, v), channels),
-            (Surface::Flat(_) | Surface::Gouraud, _) => gouraud::<F>(channels),
+            (Surface::Flat(_) | Surface::Gouraud, _) => color::<F>(channels),
         }
     }
 
@@ -182,20 +183,31 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
             (Surface::Textured(texture), None) => {
                 span.fill::<Q, 2, _>(pixels, &Texels::<F>::new(texture, self.texture_scale.into()));
             }
-            (Surface::Textured(texture), Some(_)) if span.is_gray() => {
-                span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {
-                    lit::<F>(texture.fetch(u >> 16, v >> 16), [light; 3])
-                });
-            }
             (Surface::Textured(texture), Some(_)) => {
-                span.shade::<Q, F::Word, 5>(pixels, |[u, v, red, green, blue]| {
-                    lit::<F>(texture.fetch(u >> 16, v >> 16), [red, green, blue])
-                });
+                // `Exact` has no use for coordinates and light in 16 bits.
+                let scale_log2 = self.texture_scale.into();
+                let packable = !Q::EVERY_PIXEL && texture.is_packable(scale_log2);
+                match (packable, span.is_gray()) {
+                    (true, true) => span.fill::<Q, 3, _>(pixels, &LitTexels::<F, Gray>::new(texture)),
+                    (true, false) => {
+                        span.fill::<Q, 5, _>(pixels, &LitTexels::<F, RedBlueGreen>::new(texture))
+                    }
+                    (false, true) => span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {
+                        lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3]))
+                    }),
+                    (false, false) => span.shade::<Q, F::Word, 5>(pixels, |[u, v, light @ ..]| {
+                        lit::<F>(texture.fetch(u >> 16, v >> 16), whole(light))
+                    }),
+                }
             }
-            (Surface::Flat(_) | Surface::Gouraud, _) if span.is_gray() => {
-                span.shade::<Q, F::Word, 1>(pixels, |[light]| gouraud::<F>([light; 3]));
-            }
-            (Surface::Flat(_) | Surface::Gouraud, _) => span.shade::<Q, F::Word, 3>(pixels, gouraud::<F>),
+            (Surface::Flat(_) | Surface::Gouraud, _) => match (!Q::EVERY_PIXEL, span.is_gray()) {
+                (true, true) => span.fill::<Q, 1, _>(pixels, &Colors::<F, Gray>::NEW),
+                (true, false) => span.fill::<Q, 3, _>(pixels, &Colors::<F, RedBlueGreen>::NEW),
+                (false, true) => {
+                    span.shade::<Q, F::Word, 1>(pixels, |[gray]| color::<F>(whole([gray; 3])));
+                }
+                (false, false) => span.shade::<Q, F::Word, 3>(pixels, |rgb| color::<F>(whole(rgb))),
+            },
         }
     }
 }
@@ -282,26 +294,10 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
     }
 }
 
-/// Channels in I16F16, 0 … 255.996, which `shade` promises.
+/// Channels of I16F16, 0 … 255.996, without their fractions.
 #[inline]
-fn gouraud<F: PixelFormat>(channels: [i32; 3]) -> F::Word {
-    let [red, green, blue] = channels.map(|channel| (channel >> 16) as u8);
-    F::rgb888(red, green, blue)
-}
-
-/// A texel times light, channels as of [`gouraud`].
-#[inline]
-fn lit<F: PixelFormat>(texel: u16, light: [i32; 3]) -> F::Word {
-    // 0 … 256, so that full light leaves a texel as it is.
-    let [red, green, blue] = light.map(|channel| {
-        let light = channel as u32 >> 16;
-        light + (light >> 7)
-    });
-    let texel = u32::from(texel);
-    let red = ((texel >> 11) * red) >> 8;
-    let green = (((texel >> 5) & 63) * green) >> 8;
-    let blue = ((texel & 31) * blue) >> 8;
-    F::rgb565((red << 11 | green << 5 | blue) as u16)
+fn whole(channels: [i32; 3]) -> [u32; 3] {
+    channels.map(|channel| channel as u32 >> 16)
 }
 
 /// RGB565 as 8-bit channels, full as 255.

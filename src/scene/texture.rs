@@ -148,6 +148,14 @@ impl<'a> Texture<'a> {
         }
     }
 
+    /// The texel at packed coordinates, of a texture that is packable.
+    #[inline]
+    pub(crate) fn fetch_packed(&self, packed: u32) -> u16 {
+        let shift = 32 - u32::from(self.log2_width) - u32::from(self.log2_height);
+        let index = (packed & self.mask).wrapping_mul(self.multiplier) >> (shift & 31);
+        self.texels.get(index as usize).copied().unwrap_or(0)
+    }
+
     #[inline]
     fn texel(&self, u: u32, v: u32) -> u16 {
         // Always inside: u and v were wrapped and the length was checked.

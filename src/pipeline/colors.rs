@@ -1,0 +1,236 @@
+//! Runs of colours, and of texels times light.
+//!
+//! A channel has 8 integer and 8 fraction bits here, and red and blue share a word: one addition steps both. Steps are cut to
+//! their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at most.
+
+use super::fill::{Fill, packed_from, packed_step, shifted};
+use crate::scene::Texture;
+use crate::target::PixelFormat;
+use core::marker::PhantomData;
+
+/// Log₂ of the length of straight runs that do not start anew from 32 bits.
+const RUN_LOG2: u32 = 4;
+
+/// `M` channels in as few words as they need; places, steps and bends alike.
+pub(crate) trait Channels<const M: usize>: Copy {
+    /// From 8.8 bits each.
+    fn pack(channels: [i32; M]) -> Self;
+
+    fn plus(self, other: Self) -> Self;
+
+    /// Red, green and blue, 0 … 255.
+    fn rgb(self) -> [u32; 3];
+}
+
+/// One channel for all three.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gray(i32);
+
+impl Channels<1> for Gray {
+    #[inline]
+    fn pack([gray]: [i32; 1]) -> Self {
+        Self(gray)
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0))
+    }
+
+    #[inline]
+    fn rgb(self) -> [u32; 3] {
+        [self.0 as u32 >> 8; 3]
+    }
+}
+
+/// Red above blue, and green.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RedBlueGreen(i32, i32);
+
+impl Channels<3> for RedBlueGreen {
+    #[inline]
+    fn pack([red, green, blue]: [i32; 3]) -> Self {
+        // Blue is never below 0 at a pixel, so what a negative step borrows from red is given back.
+        Self((red << 16).wrapping_add(blue), green)
+    }
+
+    #[inline]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0.wrapping_add(other.0), self.1.wrapping_add(other.1))
+    }
+
+    #[inline]
+    fn rgb(self) -> [u32; 3] {
+        [self.0 as u32 >> 24, self.1 as u32 >> 8, (self.0 as u32 >> 8) & 0xff]
+    }
+}
+
+/// Gouraud shading.
+pub(crate) struct Colors<F, C>(PhantomData<(F, C)>);
+
+impl<F, C> Colors<F, C> {
+    pub(crate) const NEW: Self = Self(PhantomData);
+}
+
+impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
+    type Word = F::Word;
+
+    #[inline]
+    fn longest(&self) -> i32 {
+        8
+    }
+
+    #[inline]
+    fn in_units(&self, _i: usize, value: i32, _scale_log2: u32) -> i32 {
+        value >> 8
+    }
+
+    #[inline]
+    fn pixel(&self, at: [i32; M]) -> F::Word {
+        color::<F>(C::pack(at.map(|channel| channel >> 8)).rgb())
+    }
+
+    #[inline]
+    fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
+        let packed_step = C::pack(step.map(|step| shifted(step, 8)));
+        for block in pixels.chunks_mut(1 << RUN_LOG2) {
+            let mut packed = C::pack(at.map(|channel| channel >> 8));
+            for pixel in block {
+                *pixel = color::<F>(packed.rgb());
+                packed = packed.plus(packed_step);
+            }
+            for (at, step) in at.iter_mut().zip(step) {
+                *at = at.wrapping_add(step << RUN_LOG2);
+            }
+        }
+    }
+
+    #[inline]
+    fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
+        let (mut at, mut step, bend) = (C::pack(at), C::pack(step), C::pack(bend));
+        for pixel in pixels {
+            *pixel = color::<F>(at.rgb());
+            (at, step) = (at.plus(step), step.plus(bend));
+        }
+    }
+}
+
+/// Texels of a texture that repeats, with coordinates packed as [`Texels`](super::Texels) has them, times light.
+pub(crate) struct LitTexels<'a, F, C> {
+    texture: &'a Texture<'a>,
+    channels: PhantomData<(F, C)>,
+}
+
+impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
+    /// Of a texture that is packable.
+    #[inline]
+    pub(crate) fn new(texture: &'a Texture<'a>) -> Self {
+        Self { texture, channels: PhantomData }
+    }
+
+    /// Along packed coordinates and light: where it begins, its step, and what is added to that each time.
+    #[inline]
+    fn run<const M: usize>(
+        &self,
+        pixels: &mut [F::Word],
+        [mut packed, mut step, bend]: [u32; 3],
+        [mut light, mut light_step, light_bend]: [C; 3],
+    ) where
+        C: Channels<M>,
+    {
+        for pixel in pixels {
+            *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
+            (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
+            (step, light_step) = (step.wrapping_add(bend), light_step.plus(light_bend));
+        }
+    }
+
+    #[inline]
+    fn long<const M: usize>(
+        &self,
+        pixels: &mut [F::Word],
+        ([mut u, mut v], [u_step, v_step]): ([i32; 2], [i32; 2]),
+        (mut light, light_step): ([i32; M], [i32; M]),
+    ) where
+        C: Channels<M>,
+    {
+        let [a, b] = self.texture.log2();
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let (packed_light_step, none) = (C::pack(light_step.map(|step| shifted(step, 8))), C::pack([0; M]));
+        let log2 = if a > 6 || b > 6 { 3 } else { RUN_LOG2 };
+        for block in pixels.chunks_mut(1 << log2) {
+            let packed_light = C::pack(light.map(|channel| channel >> 8));
+            let packed = packed_from([u >> a, v >> b], u_step);
+            self.run(block, [packed, step, 0], [packed_light, packed_light_step, none]);
+            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+            for (light, step) in light.iter_mut().zip(light_step) {
+                *light = light.wrapping_add(step << log2);
+            }
+        }
+    }
+}
+
+macro_rules! fill_of_lit_texels {
+    ($n:literal, $m:literal) => {
+        impl<F: PixelFormat, C: Channels<$m>> Fill<$n> for LitTexels<'_, F, C> {
+            type Word = F::Word;
+
+            #[inline]
+            fn longest(&self) -> i32 {
+                8
+            }
+
+            #[inline]
+            fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
+                let dropped = if i < 2 { self.texture.log2()[i].wrapping_sub(scale_log2) } else { 8 };
+                value >> (dropped & 31)
+            }
+
+            #[inline]
+            fn pixel(&self, [u, v, light @ ..]: [i32; $n]) -> F::Word {
+                let light = C::pack(light.map(|channel| channel >> 8));
+                lit::<F>(self.texture.fetch_repeat(u >> 16, v >> 16), light.rgb())
+            }
+
+            #[inline]
+            fn run_long(
+                &self,
+                pixels: &mut [F::Word],
+                [u, v, light @ ..]: [i32; $n],
+                [u_step, v_step, light_step @ ..]: [i32; $n],
+            ) {
+                self.long(pixels, ([u, v], [u_step, v_step]), (light, light_step));
+            }
+
+            #[inline]
+            fn bent(&self, pixels: &mut [F::Word], at: [i32; $n], step: [i32; $n], bend: [i32; $n]) {
+                let ([u, v, at @ ..], [u_step, v_step, step @ ..]) = (at, step);
+                let [u_bend, v_bend, bend @ ..] = bend;
+                let packed = packed_from([u, v], u_step.wrapping_mul(2).wrapping_add(u_bend));
+                let uv = [packed, packed_step([u_step, v_step]), packed_step([u_bend, v_bend])];
+                self.run(pixels, uv, [at, step, bend].map(C::pack));
+            }
+        }
+    };
+}
+
+fill_of_lit_texels!(3, 1);
+fill_of_lit_texels!(5, 3);
+
+/// The word of whole channels, 0 … 255.
+#[inline]
+pub(crate) fn color<F: PixelFormat>([red, green, blue]: [u32; 3]) -> F::Word {
+    F::rgb888(red as u8, green as u8, blue as u8)
+}
+
+/// A texel times light.
+#[inline]
+pub(crate) fn lit<F: PixelFormat>(texel: u16, light: [u32; 3]) -> F::Word {
+    // 0 … 256, so that full light leaves a texel as it is.
+    let [red, green, blue] = light.map(|light| light + (light >> 7));
+    let texel = u32::from(texel);
+    let red = (((texel & 0xf800) * red) >> 8) & 0xf800;
+    let green = (((texel & 0x07e0) * green) >> 8) & 0x07e0;
+    let blue = ((texel & 0x001f) * blue) >> 8;
+    F::rgb565((red | green | blue) as u16)
+}
