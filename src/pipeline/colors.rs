@@ -1,19 +1,24 @@
 //! Runs of colours, and of texels times light.
 //!
-//! A channel has 8 integer and 8 fraction bits here, and red and blue share a word: one addition steps both. Steps are cut to
-//! their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at most.
+//! Of three channels each has 8 integer and 8 fraction bits here, and red and blue share a word: one addition steps both. Steps
+//! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
+//! most. A single channel keeps its 16 fraction bits.
 
 use super::fill::{Fill, packed_from, packed_step, shifted};
 use crate::scene::Texture;
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
 
-/// Log₂ of the length of straight runs that do not start anew from 32 bits.
-const RUN_LOG2: u32 = 4;
-
 /// `M` channels in as few words as they need; places, steps and bends alike.
 pub(crate) trait Channels<const M: usize>: Copy {
-    /// From 8.8 bits each.
+    /// How many of 16 fraction bits are left out.
+    const DROPPED: u32;
+    /// The longest bent run, in pixels.
+    const LONGEST: i32;
+    /// Log₂ of the longest straight run that does not start anew from 32 bits, if bits are left out.
+    const RUN_LOG2: u32;
+
+    /// From channels without the bits left out.
     fn pack(channels: [i32; M]) -> Self;
 
     fn plus(self, other: Self) -> Self;
@@ -27,6 +32,10 @@ pub(crate) trait Channels<const M: usize>: Copy {
 pub(crate) struct Gray(i32);
 
 impl Channels<1> for Gray {
+    const DROPPED: u32 = 0;
+    const LONGEST: i32 = 16;
+    const RUN_LOG2: u32 = 5;
+
     #[inline]
     fn pack([gray]: [i32; 1]) -> Self {
         Self(gray)
@@ -39,7 +48,7 @@ impl Channels<1> for Gray {
 
     #[inline]
     fn rgb(self) -> [u32; 3] {
-        [self.0 as u32 >> 8; 3]
+        [self.0 as u32 >> 16; 3]
     }
 }
 
@@ -48,6 +57,10 @@ impl Channels<1> for Gray {
 pub(crate) struct RedBlueGreen(i32, i32);
 
 impl Channels<3> for RedBlueGreen {
+    const DROPPED: u32 = 8;
+    const LONGEST: i32 = 8;
+    const RUN_LOG2: u32 = 4;
+
     #[inline]
     fn pack([red, green, blue]: [i32; 3]) -> Self {
         // Blue is never below 0 at a pixel, so what a negative step borrows from red is given back.
@@ -77,30 +90,36 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn longest(&self) -> i32 {
-        8
+        C::LONGEST
     }
 
     #[inline]
     fn in_units(&self, _i: usize, value: i32, _scale_log2: u32) -> i32 {
-        value >> 8
+        value >> C::DROPPED
     }
 
     #[inline]
     fn pixel(&self, at: [i32; M]) -> F::Word {
-        color::<F>(C::pack(at.map(|channel| channel >> 8)).rgb())
+        color::<F>(C::pack(at.map(|channel| channel >> C::DROPPED)).rgb())
     }
 
     #[inline]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
-        let packed_step = C::pack(step.map(|step| shifted(step, 8)));
-        for block in pixels.chunks_mut(1 << RUN_LOG2) {
-            let mut packed = C::pack(at.map(|channel| channel >> 8));
-            for pixel in block {
+        let packed_step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
+        let run = |pixels: &mut [F::Word], at: [i32; M]| {
+            let mut packed = C::pack(at.map(|channel| channel >> C::DROPPED));
+            for pixel in pixels {
                 *pixel = color::<F>(packed.rgb());
                 packed = packed.plus(packed_step);
             }
+        };
+        if C::DROPPED == 0 {
+            return run(pixels, at);
+        }
+        for block in pixels.chunks_mut(1 << C::RUN_LOG2) {
+            run(block, at);
             for (at, step) in at.iter_mut().zip(step) {
-                *at = at.wrapping_add(step << RUN_LOG2);
+                *at = at.wrapping_add(step << C::RUN_LOG2);
             }
         }
     }
@@ -156,10 +175,11 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     {
         let [a, b] = self.texture.log2();
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let (packed_light_step, none) = (C::pack(light_step.map(|step| shifted(step, 8))), C::pack([0; M]));
-        let log2 = if a > 6 || b > 6 { 3 } else { RUN_LOG2 };
+        let (packed_light_step, none) =
+            (C::pack(light_step.map(|step| shifted(step, C::DROPPED))), C::pack([0; M]));
+        let log2 = if a > 6 || b > 6 { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
-            let packed_light = C::pack(light.map(|channel| channel >> 8));
+            let packed_light = C::pack(light.map(|channel| channel >> C::DROPPED));
             let packed = packed_from([u >> a, v >> b], u_step);
             self.run(block, [packed, step, 0], [packed_light, packed_light_step, none]);
             (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
@@ -177,18 +197,20 @@ macro_rules! fill_of_lit_texels {
 
             #[inline]
             fn longest(&self) -> i32 {
-                8
+                let [a, b] = self.texture.log2();
+                if a > 6 || b > 6 { 8 } else { C::LONGEST }
             }
 
             #[inline]
             fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
-                let dropped = if i < 2 { self.texture.log2()[i].wrapping_sub(scale_log2) } else { 8 };
+                let dropped =
+                    if i < 2 { self.texture.log2()[i].wrapping_sub(scale_log2) } else { C::DROPPED };
                 value >> (dropped & 31)
             }
 
             #[inline]
             fn pixel(&self, [u, v, light @ ..]: [i32; $n]) -> F::Word {
-                let light = C::pack(light.map(|channel| channel >> 8));
+                let light = C::pack(light.map(|channel| channel >> C::DROPPED));
                 lit::<F>(self.texture.fetch_repeat(u >> 16, v >> 16), light.rgb())
             }
 
