@@ -111,8 +111,8 @@ pub(crate) const fn mul_high_short(a: i32, b: u32) -> i32 {
 
 /// A `value` other than 0, shifted left until its first bit is set, and how far.
 ///
-/// Armv6-M has no instruction that counts zeros, and the compiler's routine takes 45 cycles there. This takes 4 for each of
-/// up to 7, and 4 for each 8.
+/// Armv6-M has no instruction that counts zeros, and the compiler's routine takes 45 cycles there. This takes 4 for each
+/// zero, and 4 for every 8 at first; clip coordinates have few.
 #[inline(always)]
 pub(crate) const fn normalised(value: u32) -> (u32, u32) {
     if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {

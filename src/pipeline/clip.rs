@@ -200,16 +200,16 @@ impl Clip {
             // There is room.
             let _ = polygon.push(ClipVertex { at: to_clip.place_all(vertex.position), u, v, color });
         }
-        let planes = [
-            Plane { axis: 2, limit: self.near, lower: true },
-            Plane { axis: 2, limit: self.far, lower: false },
-            Plane { axis: 0, limit: *CUT.start(), lower: true },
-            Plane { axis: 0, limit: *CUT.end(), lower: false },
-            Plane { axis: 1, limit: *CUT.start(), lower: true },
-            Plane { axis: 1, limit: *CUT.end(), lower: false },
-        ];
-        for plane in &planes {
-            self.cut_by(&mut polygon, plane);
+        for axis in [2, 0, 1] {
+            for lower in [true, false] {
+                let limit = match (axis, lower) {
+                    (2, true) => self.near,
+                    (2, false) => self.far,
+                    (_, true) => *CUT.start(),
+                    (_, false) => *CUT.end(),
+                };
+                self.cut_by(&mut polygon, &Plane { axis, limit, lower });
+            }
         }
         let fits = polygon.iter().zip(&mut *to).all(|(vertex, to)| {
             (to.u, to.v, to.color) = (vertex.u, vertex.v, vertex.color);
@@ -218,9 +218,9 @@ impl Clip {
         fits.then_some(polygon.len())
     }
 
-    /// Puts a vertex that clipping has nothing to do with on the screen; false, and something of it done, for another.
+    /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.
     ///
-    /// All in one function, so that little but the light is passed in memory.
+    /// All but the light in one function, so that clip coordinates stay in registers: 400 cycles on a Cortex-M0+.
     #[inline(never)]
     pub(super) fn place(
         &self,
@@ -252,7 +252,7 @@ impl Clip {
     /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
     #[inline(always)]
     fn screen(&self, x: i32, axis: usize, w: Inverse) -> i32 {
-        // x over the normalised w, times 2³¹⁻ᶠᴵᴺᴱᴿ: what overflows is beyond ±2¹⁷/16 px.
+        // As far as w was shifted, so that the product has FINER bits more: what overflows is beyond ±2¹⁶/16 px.
         let shift = w.zeros + self.scale - 17;
         let x = if shift >= 0 {
             let shifted = x << shift;
@@ -267,7 +267,8 @@ impl Clip {
     }
 
     /// Where a point of clip space is on the screen, and its q; false if it is not between the planes or its position
-    /// (1/16 px) not in `range`.
+    /// (1/16 px) not in `range`. Each coordinate is computed where it is used, and each result stored at once: there are
+    /// few registers.
     #[inline(always)]
     fn project(&self, at: impl Fn(usize) -> i32, range: &RangeInclusive<i32>, to: &mut ScreenVertex) -> bool {
         let w = at(2);
@@ -326,32 +327,50 @@ impl Clip {
     /// Cuts a convex polygon by one plane (Sutherland–Hodgman, in place).
     #[inline(never)]
     fn cut_by(&self, polygon: &mut Polygon, plane: &Plane) {
-        let inside = |vertex: &ClipVertex| self.is_inside(vertex, plane);
+        let outside = |vertex: &ClipVertex| !self.is_inside(vertex, plane);
         let count = polygon.len();
-        let Some(first_out) = polygon.iter().position(|vertex| !inside(vertex)) else {
+        let Some(first_out) = polygon.iter().position(outside) else {
             return;
         };
         // The first vertex inside that follows one outside.
-        let Some(run) = (first_out..count).chain(0..first_out).find(|&i| inside(&polygon[i])) else {
+        let Some(run) = (first_out..count).chain(0..first_out).find(|&i| !outside(&polygon[i])) else {
             polygon.clear();
             return;
         };
         // To the front with it. Three reversals rotate; the library's way takes more stack and flash.
-        polygon[..run].reverse();
-        polygon[run..].reverse();
-        polygon.reverse();
+        reverse(&mut polygon[..run]);
+        reverse(&mut polygon[run..]);
+        reverse(polygon);
         // Inside: 0 … stay; outside: stay … count.
-        let stay = polygon.iter().position(|vertex| !inside(vertex)).unwrap_or(count);
-        let cross = |from: &ClipVertex, to: &ClipVertex| {
-            between(from, to, self.distance(from, plane).max(0), -self.distance(to, plane).min(0))
-        };
-        let leave = cross(&polygon[stay - 1], &polygon[stay]);
-        let enter = cross(&polygon[0], &polygon[count - 1]);
+        let stay = polygon.iter().position(outside).unwrap_or(count);
+        let leave = self.cross(&polygon[stay - 1], &polygon[stay], plane);
+        let enter = self.cross(&polygon[0], &polygon[count - 1], plane);
         polygon.truncate(stay);
         // Each plane adds at most one vertex to a convex polygon: there is room.
         let _ = polygon.push(leave);
         let _ = polygon.push(enter);
     }
+
+    /// Where an edge crosses a plane.
+    #[inline(never)]
+    fn cross(&self, inside: &ClipVertex, outside: &ClipVertex, plane: &Plane) -> ClipVertex {
+        let before = self.distance(inside, plane).max(0);
+        between(inside, outside, before, -self.distance(outside, plane).min(0))
+    }
+}
+
+/// The library's takes 600 bytes, unrolled.
+#[inline(never)]
+fn reverse(mut vertices: &mut [ClipVertex]) {
+    while let [first, rest @ .., last] = vertices {
+        swap(first, last);
+        vertices = rest;
+    }
+}
+
+#[inline(never)]
+fn swap(a: &mut ClipVertex, b: &mut ClipVertex) {
+    core::mem::swap(a, b);
 }
 
 /// The point that divides an edge as `before` to `behind`, computed from the end `inside`.
@@ -366,8 +385,7 @@ fn between(inside: &ClipVertex, outside: &ClipVertex, before: i64, behind: i64) 
         let reciprocal = Reciprocal::precise(normal(whole) as u32);
         ((wide(normal(before), reciprocal.mantissa) >> 31) as i32).min(1 << 30)
     };
-    // Weights 2³⁰ − t and t: no difference is taken that could overflow.
-    let mix = |a: i32, b: i32| ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32;
+    let mix = |a: i32, b: i32| mix(a, b, t);
     ClipVertex {
         at: core::array::from_fn(|axis| mix(inside.at[axis], outside.at[axis])),
         u: I16F16::from_bits(mix(inside.u.to_bits(), outside.u.to_bits())),
@@ -376,4 +394,10 @@ fn between(inside: &ClipVertex, outside: &ClipVertex, before: i64, behind: i64) 
             U8F8::from_bits(mix(inside.color[i].to_bits().into(), outside.color[i].to_bits().into()) as u16)
         }),
     }
+}
+
+/// Weights 2³⁰ − t and t: no difference is taken that could overflow.
+#[inline(never)]
+fn mix(a: i32, b: i32, t: i32) -> i32 {
+    ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32
 }

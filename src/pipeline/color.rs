@@ -32,17 +32,17 @@ impl Coloring {
             Some(base) => base,
             None => &vertex.color,
         };
-        *to = match &self.light {
+        match &self.light {
             Some(light) if !light.faceted => {
-                let arrives = light.lighting.at_vertex(vertex, light.two_sided);
-                if *color == [255; 3] {
-                    arrives
-                } else {
-                    array::from_fn(|i| over_255(u32::from(color[i]) * u32::from(arrives[i].to_bits())))
+                light.lighting.at_vertex(vertex, light.two_sided, to);
+                if color[0] & color[1] & color[2] != 255 {
+                    for i in 0..3 {
+                        to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
+                    }
                 }
             }
-            _ => color.map(U8F8::from_num),
-        };
+            _ => *to = color.map(U8F8::from_num),
+        }
     }
 
     /// Whether colours are still to be multiplied by [`Coloring::on_triangle`].

@@ -37,10 +37,14 @@ pub(super) struct ToClip {
 }
 
 /// From a position in the mesh to one clip coordinate.
+///
+/// The clip units to a step of each position, within ±2¹³, in two halves, so that three products of either with 16 bits
+/// fit an `i32`, and either is loaded only where it is multiplied.
 struct Row {
-    /// Clip units to a step of each position, within ±2¹³: the upper half is rounded to whole units, the lower one is the
-    /// rest in 15 fraction bits, within ±2¹⁴. Three products of either half with 16 bits fit an `i32`.
-    elements: [i32; 3],
+    /// Rounded.
+    whole: [i16; 3],
+    /// What that leaves, 15 fraction bits, within ±2¹⁴.
+    rest: [i16; 3],
     /// In clip units, within ±2²⁹.
     translation: i32,
 }
@@ -48,21 +52,19 @@ struct Row {
 impl Row {
     /// From elements of 15 fraction bits.
     fn new(elements: [i32; 3], translation: i32) -> Self {
-        let elements = elements.map(|element| {
-            let whole = (element + (1 << 14)) >> 15;
-            (whole << 16) | ((element - (whole << 15)) & 0xffff)
-        });
-        Self { elements, translation }
+        let whole = elements.map(|element| ((element + (1 << 14)) >> 15) as i16);
+        let rest = core::array::from_fn(|i| (elements[i] - (i32::from(whole[i]) << 15)) as i16);
+        Self { whole, rest, translation }
     }
 
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
-        let (mut whole, mut rest) = (self.translation, 1 << 14);
-        for (element, position) in self.elements.into_iter().zip(position) {
-            whole += position * (element >> 16);
-            rest += position * i32::from(element as i16);
-        }
-        whole + (rest >> 15)
+        let dot = |row: &[i16; 3]| {
+            position[0] * i32::from(row[0])
+                + position[1] * i32::from(row[1])
+                + position[2] * i32::from(row[2])
+        };
+        (dot(&self.rest) >> 15) + dot(&self.whole) + self.translation
     }
 }
 

@@ -184,42 +184,44 @@ impl Lighting {
     /// `normal` is taken as it is: one that is too short gives less light. Within ¼ (of 255) of exact from the
     /// quantised normal, pose and lights, if the pose's rotation is one and no point light is nearer than
     /// 1/1000 of a mesh unit and 2⁻¹⁴ of a unit of the world; whatever the numbers, within 0 … 255. A
-    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+), a point light 20 and a reciprocal
-    /// square root (400), less if it does not reach.
+    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
+    /// point light 20 and a reciprocal square root (400), less if it does not reach.
     #[must_use]
     pub fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
-        let mut sum = self.ambient();
+        let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in &self.lights {
-            match light {
+            let (cosine, color) = match light {
                 Local::Directional { towards, color } => {
                     let cosine = facing(normal.dot(towards.map(i32::from)), two_sided);
                     let cosine = (cosine + (1 << 13)) >> 14;
                     // 127/128: 16513 to 16384.
-                    sum.add(cosine - (cosine >> 7), color);
+                    (cosine - (cosine >> 7), color)
                 }
-                Local::Point(light) => sum.add(light.at(position, normal, two_sided), &light.color),
+                Local::Point(light) => (light.at(position, normal, two_sided), &light.color),
+            };
+            for (sum, &channel) in sum.iter_mut().zip(color) {
+                // Four times 3.1 · 255 at most, for numbers that are no unit vectors.
+                *sum += cosine * u32::from(channel);
             }
         }
-        sum.limited()
+        sum.map(limited)
     }
 
-    /// [`Lighting::at`] a vertex.
+    /// [`Lighting::at`] a vertex, but for rounding.
     #[inline(always)]
-    pub(crate) fn at_vertex(&self, vertex: &Vertex, two_sided: bool) -> [U8F8; 3] {
-        let mut sum = self.ambient();
-        // What there is most often, without a loop in which all would be at hand.
+    pub(crate) fn at_vertex(&self, vertex: &Vertex, two_sided: bool, to: &mut [U8F8; 3]) {
+        // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
         if let [Local::Directional { towards, color }] = self.lights.as_slice() {
-            sum.add(facing_vertex(towards, vertex.normal, two_sided), color);
-            sum.limited()
+            let [x, y, z] = vertex.normal.map(i32::from);
+            let [to_x, to_y, to_z] = towards.map(i32::from);
+            // 127 · 16513 is 16384 in 14 fraction bits.
+            let cosine = (facing(x * to_x + y * to_y + z * to_z, two_sided) + (1 << 6)) >> 7;
+            for i in 0..3 {
+                to[i] = limited((u32::from(self.ambient[i]) << 14) + cosine * u32::from(color[i]));
+            }
         } else {
-            self.at(vertex.position, vertex.normal.into(), two_sided)
+            *to = self.at(vertex.position, vertex.normal.into(), two_sided);
         }
-    }
-
-    #[inline(always)]
-    fn ambient(&self) -> Sum {
-        let [red, green, blue] = self.ambient.map(|channel| u32::from(channel) << 14);
-        Sum { red, green, blue }
     }
 
     /// The light that arrives in the middle of a face, for flat shading: [`Lighting::at`] with
@@ -236,34 +238,9 @@ impl Lighting {
 }
 
 /// Light of 14 fraction bits.
-struct Sum {
-    red: u32,
-    green: u32,
-    blue: u32,
-}
-
-impl Sum {
-    /// Four times 3.1 · 255 at most, for numbers that are no unit vectors.
-    #[inline(always)]
-    fn add(&mut self, cosine: u32, color: &[u8; 3]) {
-        self.red += cosine * u32::from(color[0]);
-        self.green += cosine * u32::from(color[1]);
-        self.blue += cosine * u32::from(color[2]);
-    }
-
-    #[inline(always)]
-    fn limited(&self) -> [U8F8; 3] {
-        [self.red, self.green, self.blue].map(|sum| U8F8::from_bits((sum.min(255 << 14) >> 6) as u16))
-    }
-}
-
-/// How much of the cosine to a directional light counts, 14 fraction bits.
-#[inline(always)]
-fn facing_vertex(towards: &[i16; 3], normal: [i8; 3], two_sided: bool) -> u32 {
-    let [x, y, z] = normal.map(i32::from);
-    let [to_x, to_y, to_z] = towards.map(i32::from);
-    // 127 · 16513 is 16384 in these bits.
-    (facing(x * to_x + y * to_y + z * to_z, two_sided) + (1 << 6)) >> 7
+#[inline]
+fn limited(light: u32) -> U8F8 {
+    U8F8::from_bits((light.min(255 << 14) >> 6) as u16)
 }
 
 /// How much of a cosine counts.
