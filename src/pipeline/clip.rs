@@ -76,8 +76,8 @@ pub(super) struct Clip {
     /// The vanishing point, in 1/16 px with [`FINER`] bits more, plus a half, so that what is added to it is rounded to
     /// nearest.
     center: [i32; 2],
-    /// 1.0 in clip units if w does not divide, else 0.
-    orthographic: i32,
+    /// The fraction bits of clip coordinates if w does not divide, else 0.
+    flat: i32,
 }
 
 /// How many bits screen positions have behind the 1/16 px before they are rounded.
@@ -141,14 +141,14 @@ impl Clip {
             depth_zeros,
             scale: focal_log2(projection.focal) + 4,
             center: projection.center.map(|at| (at << FINER) + (1 << (FINER - 1))),
-            orthographic: if projection.orthographic { 1 << unit_bits } else { 0 },
+            flat: if projection.orthographic { unit_bits } else { 0 },
         }
     }
 
     /// What x and y are divided by, in clip units.
     #[inline]
     fn divisor(&self, w: i32) -> i32 {
-        if self.orthographic != 0 { self.orthographic } else { w }
+        if self.flat != 0 { 1 << self.flat } else { w }
     }
 
     /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
@@ -172,11 +172,8 @@ impl Clip {
             let slope = i64::from(side) * 16 - i64::from(projection.center[axis]);
             let across = i64::from(center[axis]) << self.scale;
             let outside = (across - slope * i64::from(self.divisor(center[2]))) * sign;
-            let length = if self.orthographic != 0 {
-                focal
-            } else {
-                ((focal * focal + slope * slope) as u64).isqrt() as i64
-            };
+            let length =
+                if self.flat != 0 { focal } else { ((focal * focal + slope * slope) as u64).isqrt() as i64 };
             outside <= (radius + 1) * (length + 1)
         })
     }
@@ -194,11 +191,8 @@ impl Clip {
     ) -> Option<usize> {
         let mut polygon = Polygon::new();
         for vertex in corners {
-            let mut color = [U8F8::ZERO; 3];
-            coloring.of_vertex(vertex, &mut color);
-            let [u, v] = vertex.uv.map(I16F16::from);
             // There is room.
-            let _ = polygon.push(ClipVertex { at: to_clip.place_all(vertex.position), u, v, color });
+            let _ = polygon.push(in_clip_space(to_clip, coloring, vertex));
         }
         for axis in [2, 0, 1] {
             for lower in [true, false] {
@@ -242,11 +236,7 @@ impl Clip {
     /// 1/w, or what is in its place without perspective.
     #[inline(always)]
     fn inverse(&self, w: i32) -> Inverse {
-        if self.orthographic != 0 {
-            Inverse { mantissa: 1 << 31, zeros: self.orthographic.leading_zeros() as i32 }
-        } else {
-            Inverse::of(w)
-        }
+        if self.flat != 0 { Inverse { mantissa: 1 << 31, zeros: 31 - self.flat } } else { Inverse::of(w) }
     }
 
     /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
@@ -276,7 +266,7 @@ impl Clip {
             return false;
         }
         let inverse = self.inverse(w);
-        let q = if self.orthographic != 0 {
+        let q = if self.flat != 0 {
             // Both of 31 bits.
             let depth = (self.far - w) << self.depth_zeros;
             (mul_round::<30>(depth, self.depth_mantissa) as u32).clamp(1, i32::MAX as u32)
@@ -357,6 +347,14 @@ impl Clip {
         let before = self.distance(inside, plane).max(0);
         between(inside, outside, before, -self.distance(outside, plane).min(0))
     }
+}
+
+#[inline(never)]
+fn in_clip_space(to_clip: &ToClip, coloring: &Coloring, vertex: &Vertex) -> ClipVertex {
+    let mut color = [U8F8::ZERO; 3];
+    coloring.of_vertex(vertex, &mut color);
+    let [u, v] = vertex.uv.map(I16F16::from);
+    ClipVertex { at: to_clip.place_all(vertex.position), u, v, color }
 }
 
 /// The library's takes 600 bytes, unrolled.
