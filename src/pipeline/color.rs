@@ -1,7 +1,8 @@
 //! What colour a vertex has: its own, a material's, times light.
 
 use crate::num::U8F8;
-use crate::scene::{Lighting, Normal, Vertex};
+use crate::scene::{Lighting, Vertex};
+use core::array;
 
 /// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own.
 #[derive(Debug, Default)]
@@ -26,13 +27,21 @@ impl Coloring {
 
     /// A vertex's colour, without the light of its triangle.
     #[inline(never)]
-    pub(super) fn of_vertex(&self, vertex: &Vertex) -> [U8F8; 3] {
-        let color = self.base.unwrap_or(vertex.color).map(U8F8::from_num);
+    pub(super) fn of_vertex(&self, vertex: &Vertex, to: &mut [U8F8; 3]) {
+        let color = match &self.base {
+            Some(base) => base,
+            None => &vertex.color,
+        };
         match &self.light {
             Some(light) if !light.faceted => {
-                times(color, light.lighting.at(vertex.position, Normal::from(vertex.normal), light.two_sided))
+                light.lighting.at_vertex(vertex, light.two_sided, to);
+                if color[0] & color[1] & color[2] != 255 {
+                    for i in 0..3 {
+                        to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
+                    }
+                }
             }
-            _ => color,
+            _ => *to = color.map(U8F8::from_num),
         }
     }
 
@@ -54,11 +63,14 @@ impl Coloring {
     }
 }
 
-/// Channel by channel, 255 · 255 being 255; less than 1/256 too low.
+/// Channel by channel.
 fn times(color: [U8F8; 3], light: [U8F8; 3]) -> [U8F8; 3] {
-    core::array::from_fn(|i| {
-        let product = (u32::from(color[i].to_bits()) * u32::from(light[i].to_bits())) >> 8;
-        // 1/255 = 1/256 + 1/256² + 1/256³ + …
-        U8F8::from_bits(((product + (product >> 8) + (product >> 16) + 1) >> 8).min(0xffff) as u16)
-    })
+    array::from_fn(|i| over_255((u32::from(color[i].to_bits()) * u32::from(light[i].to_bits())) >> 8))
+}
+
+/// `product` / 255, within 1/256; exact if one of the factors is 255 and the other at most that.
+#[inline]
+fn over_255(product: u32) -> U8F8 {
+    // 1/255 less 2⁻¹⁶ of it; 255 · 255.0 just fits.
+    U8F8::from_bits(((product * 257 + 0xffff) >> 16) as u16)
 }

@@ -6,18 +6,15 @@
 //! unit that its size needs. The unit cancels in x/w, and nothing can overflow.
 
 use crate::math::Pose;
-use crate::num::{I16F16, U8F8, mul_round, shift_round};
-use crate::scene::{Bounds, Projection, Vertex};
+use crate::num::{I4F12, I16F16, U8F8, mul_round, shift_round};
+use crate::scene::{Bounds, Projection};
 
 /// A vertex in clip space: what stands before the division by w.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClipVertex {
-    /// Right, times focal length / 2^[`focal_log2`](focal_log2), in units of 2^−`unit_bits`.
-    pub(super) x: i32,
-    /// Down, likewise.
-    pub(super) y: i32,
-    /// Distance before the eye, in units of 2^−`unit_bits`.
-    pub(super) w: i32,
+    /// Right and down, times focal length / 2^[`focal_log2`](focal_log2), and the distance before the eye, in units of
+    /// 2^−`unit_bits`.
+    pub(super) at: [i32; 3],
     pub(super) u: I16F16,
     pub(super) v: I16F16,
     pub(super) color: [U8F8; 3],
@@ -32,15 +29,43 @@ pub(super) const fn focal_log2(focal: I16F16) -> i32 {
 
 /// From mesh space to clip space.
 pub(super) struct ToClip {
-    /// Rows for x, y and w, in units of 2^−(`shift` + `unit_bits` + 4); below 2³⁰.
-    matrix: [[i32; 3]; 3],
-    /// 1 … 31: from sums of products to clip units.
-    shift: u32,
-    /// In clip units, within ±2²⁹.
-    translation: [i32; 3],
+    /// For x, y and w.
+    rows: [Row; 3],
     unit_bits: i32,
     /// The pose's, U10F22.
     scale: u32,
+}
+
+/// From a position in the mesh to one clip coordinate.
+///
+/// The clip units to a step of each position, within ±2¹³, in two halves, so that three products of either with 16 bits
+/// fit an `i32`, and either is loaded only where it is multiplied.
+struct Row {
+    /// Rounded.
+    whole: [i16; 3],
+    /// What that leaves, 15 fraction bits, within ±2¹⁴.
+    rest: [i16; 3],
+    /// In clip units, within ±2²⁹.
+    translation: i32,
+}
+
+impl Row {
+    /// From elements of 15 fraction bits.
+    fn new(elements: [i32; 3], translation: i32) -> Self {
+        let whole = elements.map(|element| ((element + (1 << 14)) >> 15) as i16);
+        let rest = core::array::from_fn(|i| (elements[i] - (i32::from(whole[i]) << 15)) as i16);
+        Self { whole, rest, translation }
+    }
+
+    #[inline(always)]
+    fn place(&self, position: [i32; 3]) -> i32 {
+        let dot = |row: &[i16; 3]| {
+            position[0] * i32::from(row[0])
+                + position[1] * i32::from(row[1])
+                + position[2] * i32::from(row[2])
+        };
+        (dot(&self.rest) >> 15) + dot(&self.whole) + self.translation
+    }
 }
 
 /// Rows of eye space turned into rows of clip space: y down, w along −z.
@@ -79,20 +104,19 @@ impl ToClip {
             (if shift >= 0 { shift_round(value, shift.min(63) as u32) } else { value << -shift.max(-63) })
                 as i32
         };
-        let mut clip = Self {
-            matrix: matrix.map(|row| row.map(|element| to_i32(element, excess))),
-            shift: (fraction_bits - 4 - unit_bits).min(31) as u32,
-            translation: translation.map(|element| to_i32(element, 30 - unit_bits)),
-            unit_bits,
-            scale: pose.scale.to_bits(),
-        };
         let focal = projection.focal.to_bits();
         let focal = focal << (focal.leading_zeros() - 1); // 2³⁰ … 2³¹ − 1
-        for row in 0..2 {
-            clip.matrix[row] = clip.matrix[row].map(|element| mul_round::<31>(element, focal));
-            clip.translation[row] = mul_round::<31>(clip.translation[row], focal);
-        }
-        clip
+        // At least 1.
+        let shift = (fraction_bits - 4 - unit_bits).min(31);
+        let rows = core::array::from_fn(|row| {
+            let times_focal = |value| if row < 2 { mul_round::<31>(value, focal) } else { value };
+            let elements = matrix[row].map(|element| {
+                // 30 bits; then 15 fraction bits.
+                ((times_focal(to_i32(element, excess)) >> shift) + 1) >> 1
+            });
+            Row::new(elements, times_focal(to_i32(translation[row], 30 - unit_bits)))
+        });
+        Self { rows, unit_bits, scale: pose.scale.to_bits() }
     }
 
     /// Fraction bits of clip coordinates, 10 … 28.
@@ -100,41 +124,29 @@ impl ToClip {
         self.unit_bits
     }
 
-    /// The bounds' centre, and the radius in clip units, rounded up by more than a rotation's elements are rounded.
-    pub(super) fn bounds(&self, bounds: &Bounds) -> (ClipVertex, i64) {
+    /// The bounds' centre (x, y and w), and the radius in clip units, rounded up by more than a rotation's elements are
+    /// rounded.
+    pub(super) fn bounds(&self, bounds: &Bounds) -> ([i32; 3], i64) {
         let radius = (i64::from(bounds.radius) * i64::from(self.scale)) >> (34 - self.unit_bits);
-        let center = Vertex { position: bounds.center, ..Vertex::default() };
-        (self.transform(&center, [U8F8::ZERO; 3]), radius + (radius >> 10) + 4)
+        (self.place_all(bounds.center), radius + (radius >> 10) + 4)
     }
 
-    /// Places one vertex: 18 short multiplications.
+    /// Places one vertex along one axis, x, y or w: 6 short multiplications.
+    #[inline(always)]
+    pub(super) fn place(&self, position: [i32; 3], axis: usize) -> i32 {
+        self.rows[axis].place(position)
+    }
+
+    /// Along all.
     #[inline(never)]
-    pub(super) fn transform(&self, vertex: &Vertex, color: [U8F8; 3]) -> ClipVertex {
-        let position = vertex.position.map(|p| i32::from(p.to_bits()));
-        let place = |row: usize| {
-            let [a, b, c] = self.matrix[row];
-            let sum = mul16(position[0], a) + mul16(position[1], b) + mul16(position[2], c);
-            (((sum >> (self.shift - 1)) + 1) >> 1) + self.translation[row]
-        };
-        ClipVertex {
-            x: place(0),
-            y: place(1),
-            w: place(2),
-            u: vertex.uv[0].into(),
-            v: vertex.uv[1].into(),
-            color,
-        }
+    pub(super) fn place_all(&self, position: [I4F12; 3]) -> [i32; 3] {
+        let position = position.map(|at| i32::from(at.to_bits()));
+        self.rows.each_ref().map(|row| row.place(position))
     }
 }
 
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// `a · b / 2¹⁶` rounded down, for an `a` of 16 bits: two short products.
-#[inline]
-const fn mul16(a: i32, b: i32) -> i32 {
-    a * (b >> 16) + ((a * (b & 0xffff)) >> 16)
 }
 
 /// How many bits the largest magnitude has.

@@ -9,6 +9,7 @@ mod normal;
 use crate::math::recip::Reciprocal;
 use crate::math::{Pose, Vec3, normalized};
 use crate::num::{I4F12, I16F16, U8F8, wide};
+use crate::scene::Vertex;
 use core::{array, fmt, num::NonZeroU16};
 use heapless::Vec;
 use normal::{Direction, magnitude64};
@@ -168,7 +169,8 @@ const _: () = assert!(size_of::<Lighting>() == 88);
 #[derive(Clone, Copy, Debug)]
 enum Local {
     Directional {
-        /// Unit vector, I2F14, within ±1.
+        /// 128/127 of a unit vector, I2F14, each within ±128/127: the product with the normal of a [`Vertex`](crate::Vertex)
+        /// has 21 fraction bits.
         towards: [i16; 3],
         color: [u8; 3],
     },
@@ -182,25 +184,44 @@ impl Lighting {
     /// `normal` is taken as it is: one that is too short gives less light. Within ¼ (of 255) of exact from the
     /// quantised normal, pose and lights, if the pose's rotation is one and no point light is nearer than
     /// 1/1000 of a mesh unit and 2⁻¹⁴ of a unit of the world; whatever the numbers, within 0 … 255. A
-    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+), a point light 20 and a reciprocal
-    /// square root (400), less if it does not reach.
+    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
+    /// point light 20 and a reciprocal square root (400), less if it does not reach.
     #[must_use]
     pub fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
-        // 14 fraction bits.
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in &self.lights {
             let (cosine, color) = match light {
                 Local::Directional { towards, color } => {
-                    ((facing(normal.dot(towards.map(i32::from)), two_sided) + (1 << 13)) >> 14, color)
+                    let cosine = facing(normal.dot(towards.map(i32::from)), two_sided);
+                    let cosine = (cosine + (1 << 13)) >> 14;
+                    // 127/128: 16513 to 16384.
+                    (cosine - (cosine >> 7), color)
                 }
-                Local::Point(point) => (point.at(position, normal, two_sided), &point.color),
+                Local::Point(light) => (light.at(position, normal, two_sided), &light.color),
             };
             for (sum, &channel) in sum.iter_mut().zip(color) {
-                // Four times 1.75 · 255 at most, for a normal whose components are all 1.
+                // Four times 3.1 · 255 at most, for numbers that are no unit vectors.
                 *sum += cosine * u32::from(channel);
             }
         }
-        sum.map(|sum| U8F8::from_bits(((sum + 32) >> 6).min(255 << 8) as u16))
+        sum.map(limited)
+    }
+
+    /// [`Lighting::at`] a vertex, but for rounding.
+    #[inline(always)]
+    pub(crate) fn at_vertex(&self, vertex: &Vertex, two_sided: bool, to: &mut [U8F8; 3]) {
+        // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
+        if let [Local::Directional { towards, color }] = self.lights.as_slice() {
+            let [x, y, z] = vertex.normal.map(i32::from);
+            let [to_x, to_y, to_z] = towards.map(i32::from);
+            // 127 · 16513 is 16384 in 14 fraction bits.
+            let cosine = (facing(x * to_x + y * to_y + z * to_z, two_sided) + (1 << 6)) >> 7;
+            for i in 0..3 {
+                to[i] = limited((u32::from(self.ambient[i]) << 14) + cosine * u32::from(color[i]));
+            }
+        } else {
+            *to = self.at(vertex.position, vertex.normal.into(), two_sided);
+        }
     }
 
     /// The light that arrives in the middle of a face, for flat shading: [`Lighting::at`] with
@@ -216,20 +237,27 @@ impl Lighting {
     }
 }
 
+/// Light of 14 fraction bits.
+#[inline]
+fn limited(light: u32) -> U8F8 {
+    U8F8::from_bits((light.min(255 << 14) >> 6) as u16)
+}
+
 /// How much of a cosine counts.
 #[inline]
 fn facing(cosine: i32, two_sided: bool) -> u32 {
     if two_sided { cosine.unsigned_abs() } else { cosine.max(0) as u32 }
 }
 
-/// A direction of the world in mesh space, 30 fraction bits to 14: the rotation's inverse is its transpose.
+/// 128/127 of a direction of the world in mesh space, 30 fraction bits to 14: the rotation's inverse is its transpose.
 #[inline(never)]
 fn turned_back(pose: &Pose, direction: [i32; 3]) -> [i16; 3] {
     array::from_fn(|column| {
         let sum: i64 =
             (0..3).map(|row| wide(pose.rotation[row][column].to_bits().into(), direction[row])).sum();
-        // Beyond ±1 only if the rotation is none.
-        ((sum + (1 << 29)) >> 30).clamp(-1 << 14, 1 << 14) as i16
+        // 15 bits; beyond ±1 only if the rotation is none.
+        let component = ((sum + (1 << 28)) >> 29).clamp(-1 << 15, 1 << 15) as i32;
+        ((component * 16513 + (1 << 14)) >> 15) as i16
     })
 }
 
