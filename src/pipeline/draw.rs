@@ -4,7 +4,7 @@ use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::setup::{Cull, Needs, Oriented, TriangleSetup};
 use super::shade::{Quality, Shader};
-use super::span::Window;
+use super::span::{Rows, Window};
 use super::stats::Count;
 use super::straight::Straight;
 use super::transform::ToClip;
@@ -44,7 +44,7 @@ pub(crate) fn draw<F, D, S>(
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache =
         Cache { vertices: [ScreenVertex::default(); MOST_CORNERS], owners: [NOBODY; CACHED], oldest: 0 };
-    let mut setup = TriangleSetup::new();
+    let (mut setup, mut rows) = (TriangleSetup::new(), Rows::default());
     let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
@@ -59,7 +59,7 @@ pub(crate) fn draw<F, D, S>(
                 placer.color_face(indices, shader.cull(), &mut copies);
                 triangle = copies.each_ref();
             }
-            draw_checked(triangle, shader.cull(), straight, shader, band, &window, &mut setup, stats);
+            draw_checked(triangle, shader.cull(), straight, shader, band, &window, &mut setup, &mut rows, stats);
         }
     }
 }
@@ -179,6 +179,7 @@ where
         band,
         &window,
         &mut TriangleSetup::new(),
+        &mut Rows::default(),
         &mut (),
     );
     Ok(())
@@ -193,6 +194,7 @@ fn draw_checked<F, D, S>(
     band: &mut Band<'_, F, D>,
     window: &Window,
     setup: &mut TriangleSetup,
+    rows: &mut Rows,
     stats: &mut impl Count,
 ) where
     F: PixelFormat,
@@ -217,7 +219,7 @@ fn draw_checked<F, D, S>(
             depth: !D::ALWAYS_PASSES,
         },
     );
-    band.draw(setup, window, shader);
+    band.draw(setup, rows, window, shader);
 }
 
 /// A vertex lies outside the guard band, or its texture coordinates are out of range.

@@ -3,7 +3,7 @@
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
 use crate::num::U1F31;
-use crate::pipeline::{Shader, Span, TriangleSetup, Window};
+use crate::pipeline::{Rows, Shader, Span, TriangleSetup, Window};
 use core::convert::Infallible;
 use core::fmt;
 use core::ops::Range;
@@ -120,16 +120,22 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     }
 
     /// Draws what a triangle covers of a window of this band.
-    pub(crate) fn draw<S: Shader<F>>(&mut self, setup: &TriangleSetup, window: &Window, shader: &S) {
+    pub(crate) fn draw<S: Shader<F>>(
+        &mut self,
+        setup: &TriangleSetup,
+        rows: &mut Rows,
+        window: &Window,
+        shader: &S,
+    ) {
         let (top, width) = (i32::from(self.top), usize::from(self.width));
-        setup.rows(window, |y, columns| {
+        setup.rows(rows, window, |y, start, end| {
             let row = (y - top) as usize * width;
-            let words = row + columns.start as usize..row + columns.end as usize;
+            let words = row + start as usize..row + end as usize;
             let (Some(pixels), Some(depth)) = (self.pixels.get_mut(words.clone()), self.depth.get_mut(words))
             else {
                 return;
             };
-            let span = Span::new(setup, columns.start, y);
+            let span = Span::new(setup, start, y);
             if D::ALWAYS_PASSES {
                 shader.span(&span, pixels);
             } else {
