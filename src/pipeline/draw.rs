@@ -44,22 +44,20 @@ pub(crate) fn draw<F, D, S>(
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache =
         Cache { vertices: [ScreenVertex::default(); MOST_CORNERS], owners: [NOBODY; CACHED], oldest: 0 };
-    let (mut setup, mut rows) = (TriangleSetup::new(), Rows::default());
-    let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
+    let mut raster = Raster {
+        shader,
+        band,
+        window,
+        straight: if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT },
+        setup: TriangleSetup::new(),
+        rows: Rows::default(),
+    };
+    let (cull, is_faceted) = (shader.cull(), coloring.is_faceted());
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
-        let placed = placer.place(indices, &mut cache, stats);
-        let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
-        for piece in 0..pieces {
-            let slots = placed.unwrap_or([0, piece + 1, piece + 2]);
-            let mut triangle = slots.map(|slot| &cache.vertices[slot.min(MOST_CORNERS - 1)]);
-            let mut copies;
-            if coloring.is_faceted() {
-                copies = triangle.map(|vertex| *vertex);
-                placer.color_face(indices, shader.cull(), &mut copies);
-                triangle = copies.each_ref();
-            }
-            draw_checked(triangle, shader.cull(), straight, shader, band, &window, &mut setup, &mut rows, stats);
+        match placer.place(indices, &mut cache, stats) {
+            Some(slots) if !is_faceted => raster.draw(cache.corners(slots), cull, stats),
+            placed => placer.draw_specially(indices, placed, &mut cache, &mut raster, stats),
         }
     }
 }
@@ -69,6 +67,13 @@ struct Cache {
     vertices: [ScreenVertex; MOST_CORNERS],
     owners: [u32; CACHED],
     oldest: usize,
+}
+
+impl Cache {
+    #[inline]
+    fn corners(&self, slots: [usize; 3]) -> [&ScreenVertex; 3] {
+        slots.map(|slot| &self.vertices[slot.min(MOST_CORNERS - 1)])
+    }
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -126,6 +131,34 @@ impl Placer<'_> {
         }
     }
 
+    /// Draws a triangle that has to be cut, or to be given the light of its face: what that takes is on the stack only here.
+    #[inline(never)]
+    fn draw_specially<F, D, S>(
+        &self,
+        indices: [u16; 3],
+        placed: Option<[usize; 3]>,
+        cache: &mut Cache,
+        raster: &mut Raster<'_, '_, F, D, S>,
+        stats: &mut impl Count,
+    ) where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        let cull = raster.shader.cull();
+        let pieces = if placed.is_some() { 1 } else { self.cut(indices, cache, stats) };
+        for piece in 0..pieces {
+            let mut triangle = cache.corners(placed.unwrap_or([0, piece + 1, piece + 2]));
+            let mut copies;
+            if self.coloring.is_faceted() {
+                copies = triangle.map(|vertex| *vertex);
+                self.color_face(indices, cull, &mut copies);
+                triangle = copies.each_ref();
+            }
+            raster.draw(triangle, cull, stats);
+        }
+    }
+
     /// Gives a triangle that is not culled the light of its face.
     #[inline(never)]
     fn color_face(&self, indices: [u16; 3], cull: Cull, triangle: &mut [ScreenVertex; 3]) {
@@ -171,55 +204,52 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    draw_checked(
-        vertices.each_ref(),
-        cull,
-        S::Quality::STRAIGHT,
-        shader,
-        band,
-        &window,
-        &mut TriangleSetup::new(),
-        &mut Rows::default(),
-        &mut (),
-    );
+    let (setup, rows) = (TriangleSetup::new(), Rows::default());
+    let mut raster = Raster { shader, band, window, straight: S::Quality::STRAIGHT, setup, rows };
+    raster.draw(vertices.each_ref(), cull, &mut ());
     Ok(())
 }
 
-#[inline(never)]
-fn draw_checked<F, D, S>(
-    vertices: [&ScreenVertex; 3],
-    cull: Cull,
+/// The stages from set-up on.
+struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
+    shader: &'a S,
+    band: &'a mut Band<'b, F, D>,
+    window: Window,
     straight: Straight,
-    shader: &S,
-    band: &mut Band<'_, F, D>,
-    window: &Window,
-    setup: &mut TriangleSetup,
-    rows: &mut Rows,
-    stats: &mut impl Count,
-) where
+    setup: TriangleSetup,
+    rows: Rows,
+}
+
+impl<F, D, S> Raster<'_, '_, F, D, S>
+where
     F: PixelFormat,
     D: DepthFormat,
     S: Shader<F>,
 {
-    let Some(triangle) = Oriented::new(vertices, cull) else {
-        return stats.count(|stats| &mut stats.culled);
-    };
-    if !window.touches(&triangle) {
-        return stats.count(|stats| &mut stats.out_of_sight);
+    #[inline]
+    fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
+        match Oriented::new(vertices, cull) {
+            Some(triangle) => self.draw_oriented(&triangle, stats),
+            None => stats.count(|stats| &mut stats.culled),
+        }
     }
-    stats.count(|stats| &mut stats.drawn);
-    let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set(
-        &triangle,
-        &Needs {
-            inputs,
-            straight,
+
+    #[inline(never)]
+    fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
+        if !self.window.touches(triangle) {
+            return stats.count(|stats| &mut stats.out_of_sight);
+        }
+        stats.count(|stats| &mut stats.drawn);
+        let needs = Needs {
+            inputs: self.shader.inputs(),
+            straight: self.straight,
             every_pixel: S::Quality::EVERY_PIXEL,
-            texture_scale,
+            texture_scale: self.shader.texture_scale().min(8),
             depth: !D::ALWAYS_PASSES,
-        },
-    );
-    band.draw(setup, rows, window, shader);
+        };
+        self.setup.set(triangle, &needs);
+        self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
+    }
 }
 
 /// A vertex lies outside the guard band, or its texture coordinates are out of range.

@@ -82,8 +82,8 @@ impl TriangleSetup {
                 return false;
             }
             self.z = slopes.plane(z[0], rise);
-            // 1/1024 of which is a quarter of a depth step.
-            if self.z.steps.iter().any(|step| step.unsigned_abs() > 1 << 23) {
+            // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
+            if self.z.steps.iter().any(|step| step.unsigned_abs() >> 27 != 0 || (step.unsigned_abs() >> 8) * largest > 1 << 25) {
                 return false;
             }
         }

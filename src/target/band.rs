@@ -137,7 +137,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
             };
             let span = Span::new(setup, start, y);
             if D::ALWAYS_PASSES {
-                shader.span(&span, pixels);
+                shade(shader, &span, pixels);
             } else {
                 draw_visible::<F, D, S>(&span, pixels, depth, shader);
             }
@@ -173,9 +173,15 @@ fn draw_visible<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     while let Some(start) = find(true) {
         let end = find(false).unwrap_or(count);
         if let Some(run) = pixels.get_mut(start..end) {
-            shader.span(&Span::new(span.setup(), span.x() + start as i32, span.y()), run);
+            shade(shader, &Span::new(span.setup(), span.x() + start as i32, span.y()), run);
         }
     }
+}
+
+/// Not inlined: the compiler would prepare every kind of span for each triangle.
+#[inline(never)]
+fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, span: &Span<'_>, pixels: &mut [F::Word]) {
+    shader.span(span, pixels);
 }
 
 impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
