@@ -102,7 +102,7 @@ pub(crate) fn short(m: u32) -> u32 {
     (looked_up(m) + (1 << 13)) >> 14
 }
 
-/// `numerator / divisor` with 20 fraction bits, for a numerator within ±511 and a divisor of 1 … 511, of which each has a place in
+/// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 and a divisor of 1 … 511, of which each has a place in
 /// the table: relative error below 2⁻²⁰, and rounded to nearest.
 #[inline(never)]
 pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {

@@ -17,6 +17,7 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
 const NOBODY: u32 = u32::MAX;
+const HINTS: usize = 16;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F, D, S>(
@@ -42,22 +43,33 @@ pub(crate) fn draw<F, D, S>(
     }
     let coloring = shader.coloring(pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
-    let mut cache =
-        Cache { vertices: [ScreenVertex::default(); MOST_CORNERS], owners: [NOBODY; CACHED], oldest: 0 };
+    let mut cache = Cache {
+        vertices: [ScreenVertex::default(); MOST_CORNERS],
+        owners: [NOBODY; CACHED],
+        hints: [0; HINTS],
+        oldest: 0,
+    };
     let mut raster = Raster {
         shader,
         band,
         window,
-        straight: if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT },
+        needs: needs::<F, D, S>(shader, projection.orthographic),
         setup: TriangleSetup::new(),
         rows: Rows::default(),
     };
     let (cull, is_faceted) = (shader.cull(), coloring.is_faceted());
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
-        match placer.place(indices, &mut cache, stats) {
+        let placed = placer.place(indices, &mut cache, stats);
+        match placed {
             Some(slots) if !is_faceted => raster.draw(cache.corners(slots), cull, stats),
-            placed => placer.draw_specially(indices, placed, &mut cache, &mut raster, stats),
+            _ => {
+                let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
+                for piece in 0..pieces {
+                    let slots = placed.unwrap_or([0, piece as u8 + 1, piece as u8 + 2]);
+                    placer.draw_piece(indices, cache.corners(slots), &mut raster, stats);
+                }
+            }
         }
     }
 }
@@ -66,13 +78,20 @@ pub(crate) fn draw<F, D, S>(
 struct Cache {
     vertices: [ScreenVertex; MOST_CORNERS],
     owners: [u32; CACHED],
+    /// Where a vertex is found most often, by the lowest bits of its index.
+    hints: [u8; HINTS],
     oldest: usize,
 }
 
 impl Cache {
     #[inline]
-    fn corners(&self, slots: [usize; 3]) -> [&ScreenVertex; 3] {
-        slots.map(|slot| &self.vertices[slot.min(MOST_CORNERS - 1)])
+    fn corners(&self, slots: [u8; 3]) -> [&ScreenVertex; 3] {
+        slots.map(|slot| &self.vertices[usize::from(slot).min(MOST_CORNERS - 1)])
+    }
+
+    #[inline]
+    fn hint(&self, index: u16) -> u8 {
+        self.hints[usize::from(index) % HINTS]
     }
 }
 
@@ -88,31 +107,47 @@ struct Placer<'a> {
 impl Placer<'_> {
     /// Where in the cache a triangle's vertices on the screen are, or are now; `None` if it has to be cut.
     #[inline(never)]
-    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[usize; 3]> {
-        let mut slots = [CACHED; 3];
-        for (i, index) in indices.into_iter().enumerate() {
-            let index = u32::from(index);
-            slots[i] = match cache.owners.iter().position(|owner| *owner == index) {
-                Some(slot) => slot,
-                None => {
-                    stats.count(|stats| &mut stats.transformed);
-                    // The oldest, but none of this triangle's.
-                    let mut slot = cache.oldest % CACHED;
-                    while slots.contains(&slot) {
-                        slot = (slot + 1) % CACHED;
-                    }
-                    cache.owners[slot] = NOBODY;
-                    let vertex = self.mesh.vertex(index as u16);
-                    if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
-                        return None;
-                    }
-                    cache.owners[slot] = index;
-                    cache.oldest = slot + 1;
-                    slot
-                }
+    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[u8; 3]> {
+        let mut slots = [CACHED as u8; 3];
+        for i in 0..3 {
+            let hint = cache.hint(indices[i]);
+            slots[i] = if cache.owners[usize::from(hint) % CACHED] == u32::from(indices[i]) {
+                hint
+            } else {
+                self.place_vertex(indices[i], slots, cache, stats)?
             };
         }
         Some(slots)
+    }
+
+    /// Looks for a vertex everywhere, or puts it in the place of the oldest, but none of this triangle's `slots`; `None` if it has
+    /// to be cut off.
+    #[inline(never)]
+    fn place_vertex(
+        &self,
+        index: u16,
+        slots: [u8; 3],
+        cache: &mut Cache,
+        stats: &mut impl Count,
+    ) -> Option<u8> {
+        let owner = u32::from(index);
+        if let Some(slot) = cache.owners.iter().position(|other| *other == owner) {
+            return Some(slot as u8);
+        }
+        stats.count(|stats| &mut stats.transformed);
+        let mut slot = cache.oldest % CACHED;
+        while slots.contains(&(slot as u8)) {
+            slot = (slot + 1) % CACHED;
+        }
+        cache.owners[slot] = NOBODY;
+        let vertex = self.mesh.vertex(index);
+        if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
+            return None;
+        }
+        cache.owners[slot] = owner;
+        cache.hints[usize::from(index) % HINTS] = slot as u8;
+        cache.oldest = slot + 1;
+        Some(slot as u8)
     }
 
     /// Cuts a triangle, in the cache's memory: how many pieces it has, as a fan around the first vertex.
@@ -131,13 +166,12 @@ impl Placer<'_> {
         }
     }
 
-    /// Draws a triangle that has to be cut, or to be given the light of its face: what that takes is on the stack only here.
+    /// Draws a piece of a triangle that was cut, or a triangle that has to be given the light of its face.
     #[inline(never)]
-    fn draw_specially<F, D, S>(
+    fn draw_piece<F, D, S>(
         &self,
         indices: [u16; 3],
-        placed: Option<[usize; 3]>,
-        cache: &mut Cache,
+        piece: [&ScreenVertex; 3],
         raster: &mut Raster<'_, '_, F, D, S>,
         stats: &mut impl Count,
     ) where
@@ -145,30 +179,35 @@ impl Placer<'_> {
         D: DepthFormat,
         S: Shader<F>,
     {
-        let cull = raster.shader.cull();
-        let pieces = if placed.is_some() { 1 } else { self.cut(indices, cache, stats) };
-        for piece in 0..pieces {
-            let mut triangle = cache.corners(placed.unwrap_or([0, piece + 1, piece + 2]));
-            let mut copies;
-            if self.coloring.is_faceted() {
-                copies = triangle.map(|vertex| *vertex);
-                self.color_face(indices, cull, &mut copies);
-                triangle = copies.each_ref();
-            }
-            raster.draw(triangle, cull, stats);
+        if self.coloring.is_faceted() {
+            self.draw_faceted(indices, piece, raster, stats);
+        } else {
+            raster.draw(piece, raster.shader.cull(), stats);
         }
     }
 
-    /// Gives a triangle that is not culled the light of its face.
+    /// With the light of its face.
     #[inline(never)]
-    fn color_face(&self, indices: [u16; 3], cull: Cull, triangle: &mut [ScreenVertex; 3]) {
-        if Oriented::new(triangle.each_ref(), cull).is_none() {
-            return;
-        }
+    fn draw_faceted<F, D, S>(
+        &self,
+        indices: [u16; 3],
+        piece: [&ScreenVertex; 3],
+        raster: &mut Raster<'_, '_, F, D, S>,
+        stats: &mut impl Count,
+    ) where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        let Some(oriented) = Oriented::new(piece, raster.shader.cull()) else {
+            return stats.count(|stats| &mut stats.culled);
+        };
+        let mut colored = oriented.vertices.map(|vertex| *vertex);
         let corners = indices.map(|index| self.mesh.vertex(index));
-        for vertex in triangle {
+        for vertex in &mut colored {
             vertex.color = self.coloring.on_triangle(vertex.color, corners);
         }
+        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: oriented.area }, stats);
     }
 }
 
@@ -205,9 +244,20 @@ where
     }
     let window = band.window();
     let (setup, rows) = (TriangleSetup::new(), Rows::default());
-    let mut raster = Raster { shader, band, window, straight: S::Quality::STRAIGHT, setup, rows };
+    let needs = needs::<F, D, S>(shader, false);
+    let mut raster = Raster { shader, band, window, needs, setup, rows };
     raster.draw(vertices.each_ref(), cull, &mut ());
     Ok(())
+}
+
+fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, is_orthographic: bool) -> Needs {
+    Needs {
+        inputs: shader.inputs(),
+        straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
+        every_pixel: S::Quality::EVERY_PIXEL,
+        texture_scale: shader.texture_scale().min(8),
+        depth: !D::ALWAYS_PASSES,
+    }
 }
 
 /// The stages from set-up on.
@@ -215,7 +265,7 @@ struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
     shader: &'a S,
     band: &'a mut Band<'b, F, D>,
     window: Window,
-    straight: Straight,
+    needs: Needs,
     setup: TriangleSetup,
     rows: Rows,
 }
@@ -240,14 +290,7 @@ where
             return stats.count(|stats| &mut stats.out_of_sight);
         }
         stats.count(|stats| &mut stats.drawn);
-        let needs = Needs {
-            inputs: self.shader.inputs(),
-            straight: self.straight,
-            every_pixel: S::Quality::EVERY_PIXEL,
-            texture_scale: self.shader.texture_scale().min(8),
-            depth: !D::ALWAYS_PASSES,
-        };
-        self.setup.set(triangle, &needs);
+        self.setup.set(triangle, &self.needs);
         self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
     }
 }

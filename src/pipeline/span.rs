@@ -56,8 +56,9 @@ impl<'a> Span<'a> {
         self.setup.gray
     }
 
-    pub(crate) const fn setup(&self) -> &'a TriangleSetup {
-        self.setup
+    /// Without its first pixels.
+    pub(crate) const fn ahead(&self, pixels: usize) -> Self {
+        Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
     }
 
     /// q = near/w with 31 fraction bits at the first pixel, and its step.
@@ -96,7 +97,7 @@ impl Edge {
         *self = Self { x: x << FRACTION, slope: slope << FRACTION, remainder, slope_remainder, divisor };
     }
 
-    /// Likewise, less than 32 pixels wide and high: without a remainder.
+    /// Likewise, at most 32 pixels wide and less high: without a remainder.
     ///
     /// The number is a multiple of 1/16dy, rounded up. 2⁻¹⁴ less, half of the least such step, may be wrong by just as much. The
     /// reciprocal is, by 2⁻²⁰, and makes |dx|·2⁻²⁴ ≤ 2⁻¹⁵ of x; the slope's rounding makes 2⁻²¹ a row, 2⁻¹⁶ at most.
@@ -161,9 +162,13 @@ impl Rows {
         if self.row >= self.end {
             return;
         }
-        let (left, right) = (top[0].min(next[0]).min(last[0]), top[0].max(next[0]).max(last[0]));
-        self.is_cut = left < window.columns.start * 16 || right > window.columns.end * 16;
-        self.is_long = (right - left) | (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
+        let Range { start, end } = window.columns;
+        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
+        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
+        let wide = |from: i32, to: i32| to - from + (1 << 9);
+        self.is_long = (wide(top[0], next[0]) | wide(top[0], last[0]) | wide(next[0], last[0])) as u32 >> 10
+            != 0
+            || (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
         self.lower_is_right = next_row < last_row;
         self.lower = if self.lower_is_right { [*next, *last] } else { [*last, *next] };
         if next_row > self.row {
@@ -189,16 +194,6 @@ impl Rows {
     fn pass_knee(&mut self) {
         let [top, bottom] = self.lower;
         self.set_edge(self.lower_is_right, &top, &bottom);
-    }
-
-    #[inline(never)]
-    fn next_long_or_cut(&mut self, window: &Window) -> (i32, i32) {
-        let (left, right) = (self.left.next(), self.right.next());
-        if self.is_long {
-            self.left.carry();
-            self.right.carry();
-        }
-        (left.max(window.columns.start), right.min(window.columns.end))
     }
 }
 
@@ -258,11 +253,15 @@ impl TriangleSetup {
                 rows.end
             };
             while y < stop {
-                let (left, right) = if is_simple {
-                    (rows.left.next(), rows.right.next())
-                } else {
-                    rows.next_long_or_cut(window)
-                };
+                let (mut left, mut right) = (rows.left.next(), rows.right.next());
+                if !is_simple {
+                    left = left.max(window.columns.start);
+                    right = right.min(window.columns.end);
+                    if rows.is_long {
+                        rows.left.carry();
+                        rows.right.carry();
+                    }
+                }
                 if left < right {
                     emit(y, left, right);
                 }

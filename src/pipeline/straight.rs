@@ -12,7 +12,7 @@
 //! |Δuᵢⱼ| / (|Δxᵢⱼ| + |Δyᵢⱼ|), and counts as at least 1 texel or 1/255.
 
 use crate::math::recip::short;
-use crate::num::{mul_16, mul_17};
+use crate::num::mul_16;
 
 /// Which triangles are straight in some quality.
 #[derive(Clone, Copy, Debug)]
@@ -49,9 +49,9 @@ impl Bend {
                 length(across[0], down[0]),
                 length(across[0] + across[1], down[0] + down[1]),
             ],
-            // Rounded up.
+            // Rounded up; 15 bits times 17.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
-                .map(|fall| (mul_17((fall << zeros) as i32, reciprocal) as u32 >> 16) + 1),
+                .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
         })
     }
 
