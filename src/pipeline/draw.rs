@@ -41,7 +41,7 @@ pub(crate) fn draw<F, D, S>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let coloring = shader.coloring(pose);
+    let coloring = coloring::<F, S>(shader, pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
     let mut cache = Cache {
         vertices: [ScreenVertex::default(); MOST_CORNERS],
@@ -65,13 +65,16 @@ pub(crate) fn draw<F, D, S>(
             Some(slots) if !is_faceted => raster.draw(cache.corners(slots), cull, stats),
             _ => {
                 let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
-                for piece in 0..pieces {
-                    let slots = placed.unwrap_or([0, piece as u8 + 1, piece as u8 + 2]);
-                    placer.draw_piece(indices, cache.corners(slots), &mut raster, stats);
-                }
+                placer.draw_pieces(indices, placed, pieces, &cache, &mut raster, stats);
             }
         }
     }
+}
+
+/// Not inlined: what it takes is not on the stack while pixels are drawn.
+#[inline(never)]
+fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
+    shader.coloring(pose)
 }
 
 /// The vertices that were placed last.
@@ -166,12 +169,14 @@ impl Placer<'_> {
         }
     }
 
-    /// Draws a piece of a triangle that was cut, or a triangle that has to be given the light of its face.
+    /// Draws the pieces of a triangle that was cut, or a triangle that has to be given the light of its face.
     #[inline(never)]
-    fn draw_piece<F, D, S>(
+    fn draw_pieces<F, D, S>(
         &self,
         indices: [u16; 3],
-        piece: [&ScreenVertex; 3],
+        placed: Option<[u8; 3]>,
+        pieces: usize,
+        cache: &Cache,
         raster: &mut Raster<'_, '_, F, D, S>,
         stats: &mut impl Count,
     ) where
@@ -179,10 +184,13 @@ impl Placer<'_> {
         D: DepthFormat,
         S: Shader<F>,
     {
-        if self.coloring.is_faceted() {
-            self.draw_faceted(indices, piece, raster, stats);
-        } else {
-            raster.draw(piece, raster.shader.cull(), stats);
+        for piece in 0..pieces as u8 {
+            let piece = cache.corners(placed.unwrap_or([0, piece + 1, piece + 2]));
+            if self.coloring.is_faceted() {
+                self.draw_faceted(indices, piece, raster, stats);
+            } else {
+                raster.draw(piece, raster.shader.cull(), stats);
+            }
         }
     }
 

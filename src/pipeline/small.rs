@@ -33,15 +33,14 @@ impl Slopes {
         let rise = rise.map(|rise| rise >> dropped);
         let (up, down) =
             ((self.zeros + dropped).saturating_sub(28), 28u32.saturating_sub(self.zeros + dropped));
-        let mut steps = [0; 2];
-        for axis in 0..2 {
-            let [b, c] = self.edges[axis];
+        let steps = self.edges.map(|[b, c]| {
             let slope = mul_17(rise[0] * b + rise[1] * c, self.reciprocal);
-            let step = (slope << (up & 31)) >> (down & 31);
+            (slope << (up & 31)) >> (down & 31)
+        });
+        for (axis, step) in steps.into_iter().enumerate() {
             origin = origin
                 .wrapping_add_signed((step >> 4) * self.to_center[axis])
                 .wrapping_sub(self.pixel[axis].wrapping_mul(step) as u32);
-            steps[axis] = step;
         }
         Plane { origin, steps }
     }

@@ -270,3 +270,31 @@ impl TriangleSetup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_edges_of_all_sizes_count_exactly_in_every_row() {
+        let mut seed = 1_u32;
+        for dy in 1..1 << 9 {
+            for dx in -512..=512 {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let top = [(seed >> 16) as i32 % 15_000, (seed >> 4) as i32 & 15];
+                let bottom = [top[0] + dx, top[1] + dy];
+                let (start, end) = (first_row(top[1]), first_row(bottom[1]));
+                let mut edge = Edge::default();
+                // As the window may have it, from any row on.
+                let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);
+                if first < end {
+                    edge.short(top, bottom, first);
+                }
+                for row in first..end {
+                    let exactly = (top[0] - 8) * dy + (row * 16 + 8 - top[1]) * dx + 16 * dy - 1;
+                    assert_eq!(edge.next(), exactly.div_euclid(16 * dy), "{top:?} to {bottom:?}, row {row}");
+                }
+            }
+        }
+    }
+}

@@ -70,7 +70,7 @@ impl Bend {
         // 4 · error, at most a quarter of a rise.
         let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
         let error = (error >> 8) + 1;
-        error <= (unit >> 8) * (limit >> 8) >> 8
+        error <= ((unit >> 8) * (limit >> 8)) >> 8
             || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
     }
 }

@@ -145,10 +145,10 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
             let mut first = first;
             loop {
                 let run = visible::<D>(depth, near_w, step);
-                if let Some(pixels) = self.pixels.get_mut(first + run.start..first + run.end) {
-                    if !pixels.is_empty() {
-                        shade(shader, &span.ahead(run.start), pixels);
-                    }
+                if let Some(pixels) = self.pixels.get_mut(first + run.start..first + run.end)
+                    && !pixels.is_empty()
+                {
+                    shade(shader, &span.ahead(run.start), pixels);
                 }
                 depth = depth.get_mut(run.end..).unwrap_or_default();
                 if depth.is_empty() {
