@@ -84,7 +84,7 @@ pub(crate) fn looked_up(m: u32) -> u32 {
 
 /// Quotient and remainder from a quotient that is off by at most a few.
 #[inline]
-pub(crate) fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {
+fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {
     let mut remainder = numerator.wrapping_sub(quotient.wrapping_mul(divisor));
     // Most often these loops do not run.
     while remainder < 0 {
@@ -100,6 +100,18 @@ pub(crate) fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32
 #[inline]
 pub(crate) fn short(m: u32) -> u32 {
     (looked_up(m) + (1 << 13)) >> 14
+}
+
+/// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 and a divisor of 1 … 511, of which each has a place in
+/// the table: relative error below 2⁻²⁰, and rounded to nearest.
+#[inline(never)]
+pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
+    let (mut m, mut down) = ((divisor as u32) << 23, 8);
+    while m as i32 > 0 {
+        (m, down) = (m << 1, down - 1);
+    }
+    let reciprocal = (TABLE[(m >> 22) as usize & (INTERVALS - 1)] + (1 << 9)) >> 10;
+    (((numerator * reciprocal as i32) >> (down & 31)) + 1) >> 1
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::setup::{Cull, Needs, Oriented, TriangleSetup};
 use super::shade::{Quality, Shader};
-use super::span::Window;
+use super::span::{Rows, Window};
 use super::stats::Count;
 use super::straight::Straight;
 use super::transform::ToClip;
@@ -17,6 +17,7 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
 const NOBODY: u32 = u32::MAX;
+const HINTS: usize = 16;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F, D, S>(
@@ -40,35 +41,61 @@ pub(crate) fn draw<F, D, S>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let coloring = shader.coloring(pose);
+    let coloring = coloring::<F, S>(shader, pose);
     let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
-    let mut cache =
-        Cache { vertices: [ScreenVertex::default(); MOST_CORNERS], owners: [NOBODY; CACHED], oldest: 0 };
-    let mut setup = TriangleSetup::new();
-    let straight = if projection.orthographic { Straight::Always } else { S::Quality::STRAIGHT };
+    let mut cache = Cache {
+        vertices: [ScreenVertex::default(); MOST_CORNERS],
+        owners: [NOBODY; CACHED],
+        hints: [0; HINTS],
+        oldest: 0,
+    };
+    let mut raster = Raster {
+        shader,
+        band,
+        window,
+        needs: needs::<F, D, S>(shader, projection.orthographic),
+        setup: TriangleSetup::new(),
+        rows: Rows::default(),
+    };
+    let (cull, is_faceted) = (shader.cull(), coloring.is_faceted());
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
         let placed = placer.place(indices, &mut cache, stats);
-        let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
-        for piece in 0..pieces {
-            let slots = placed.unwrap_or([0, piece + 1, piece + 2]);
-            let mut triangle = slots.map(|slot| &cache.vertices[slot.min(MOST_CORNERS - 1)]);
-            let mut copies;
-            if coloring.is_faceted() {
-                copies = triangle.map(|vertex| *vertex);
-                placer.color_face(indices, shader.cull(), &mut copies);
-                triangle = copies.each_ref();
+        match placed {
+            Some(slots) if !is_faceted => raster.draw(cache.corners(slots), cull, stats),
+            _ => {
+                let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
+                placer.draw_pieces(indices, placed, pieces, &cache, &mut raster, stats);
             }
-            draw_checked(triangle, shader.cull(), straight, shader, band, &window, &mut setup, stats);
         }
     }
+}
+
+/// Not inlined: what it takes is not on the stack while pixels are drawn.
+#[inline(never)]
+fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
+    shader.coloring(pose)
 }
 
 /// The vertices that were placed last.
 struct Cache {
     vertices: [ScreenVertex; MOST_CORNERS],
     owners: [u32; CACHED],
+    /// Where a vertex is found most often, by the lowest bits of its index.
+    hints: [u8; HINTS],
     oldest: usize,
+}
+
+impl Cache {
+    #[inline]
+    fn corners(&self, slots: [u8; 3]) -> [&ScreenVertex; 3] {
+        slots.map(|slot| &self.vertices[usize::from(slot).min(MOST_CORNERS - 1)])
+    }
+
+    #[inline]
+    fn hint(&self, index: u16) -> u8 {
+        self.hints[usize::from(index) % HINTS]
+    }
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -83,31 +110,47 @@ struct Placer<'a> {
 impl Placer<'_> {
     /// Where in the cache a triangle's vertices on the screen are, or are now; `None` if it has to be cut.
     #[inline(never)]
-    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[usize; 3]> {
-        let mut slots = [CACHED; 3];
-        for (i, index) in indices.into_iter().enumerate() {
-            let index = u32::from(index);
-            slots[i] = match cache.owners.iter().position(|owner| *owner == index) {
-                Some(slot) => slot,
-                None => {
-                    stats.count(|stats| &mut stats.transformed);
-                    // The oldest, but none of this triangle's.
-                    let mut slot = cache.oldest % CACHED;
-                    while slots.contains(&slot) {
-                        slot = (slot + 1) % CACHED;
-                    }
-                    cache.owners[slot] = NOBODY;
-                    let vertex = self.mesh.vertex(index as u16);
-                    if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
-                        return None;
-                    }
-                    cache.owners[slot] = index;
-                    cache.oldest = slot + 1;
-                    slot
-                }
+    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[u8; 3]> {
+        let mut slots = [CACHED as u8; 3];
+        for i in 0..3 {
+            let hint = cache.hint(indices[i]);
+            slots[i] = if cache.owners[usize::from(hint) % CACHED] == u32::from(indices[i]) {
+                hint
+            } else {
+                self.place_vertex(indices[i], slots, cache, stats)?
             };
         }
         Some(slots)
+    }
+
+    /// Looks for a vertex everywhere, or puts it in the place of the oldest, but none of this triangle's `slots`; `None` if it has
+    /// to be cut off.
+    #[inline(never)]
+    fn place_vertex(
+        &self,
+        index: u16,
+        slots: [u8; 3],
+        cache: &mut Cache,
+        stats: &mut impl Count,
+    ) -> Option<u8> {
+        let owner = u32::from(index);
+        if let Some(slot) = cache.owners.iter().position(|other| *other == owner) {
+            return Some(slot as u8);
+        }
+        stats.count(|stats| &mut stats.transformed);
+        let mut slot = cache.oldest % CACHED;
+        while slots.contains(&(slot as u8)) {
+            slot = (slot + 1) % CACHED;
+        }
+        cache.owners[slot] = NOBODY;
+        let vertex = self.mesh.vertex(index);
+        if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
+            return None;
+        }
+        cache.owners[slot] = owner;
+        cache.hints[usize::from(index) % HINTS] = slot as u8;
+        cache.oldest = slot + 1;
+        Some(slot as u8)
     }
 
     /// Cuts a triangle, in the cache's memory: how many pieces it has, as a fan around the first vertex.
@@ -126,16 +169,53 @@ impl Placer<'_> {
         }
     }
 
-    /// Gives a triangle that is not culled the light of its face.
+    /// Draws the pieces of a triangle that was cut, or a triangle that has to be given the light of its face.
     #[inline(never)]
-    fn color_face(&self, indices: [u16; 3], cull: Cull, triangle: &mut [ScreenVertex; 3]) {
-        if Oriented::new(triangle.each_ref(), cull).is_none() {
-            return;
+    fn draw_pieces<F, D, S>(
+        &self,
+        indices: [u16; 3],
+        placed: Option<[u8; 3]>,
+        pieces: usize,
+        cache: &Cache,
+        raster: &mut Raster<'_, '_, F, D, S>,
+        stats: &mut impl Count,
+    ) where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        for piece in 0..pieces as u8 {
+            let piece = cache.corners(placed.unwrap_or([0, piece + 1, piece + 2]));
+            if self.coloring.is_faceted() {
+                self.draw_faceted(indices, piece, raster, stats);
+            } else {
+                raster.draw(piece, raster.shader.cull(), stats);
+            }
         }
+    }
+
+    /// With the light of its face.
+    #[inline(never)]
+    fn draw_faceted<F, D, S>(
+        &self,
+        indices: [u16; 3],
+        piece: [&ScreenVertex; 3],
+        raster: &mut Raster<'_, '_, F, D, S>,
+        stats: &mut impl Count,
+    ) where
+        F: PixelFormat,
+        D: DepthFormat,
+        S: Shader<F>,
+    {
+        let Some(oriented) = Oriented::new(piece, raster.shader.cull()) else {
+            return stats.count(|stats| &mut stats.culled);
+        };
+        let mut colored = oriented.vertices.map(|vertex| *vertex);
         let corners = indices.map(|index| self.mesh.vertex(index));
-        for vertex in triangle {
+        for vertex in &mut colored {
             vertex.color = self.coloring.on_triangle(vertex.color, corners);
         }
+        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: oriented.area }, stats);
     }
 }
 
@@ -171,53 +251,56 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    draw_checked(
-        vertices.each_ref(),
-        cull,
-        S::Quality::STRAIGHT,
-        shader,
-        band,
-        &window,
-        &mut TriangleSetup::new(),
-        &mut (),
-    );
+    let (setup, rows) = (TriangleSetup::new(), Rows::default());
+    let needs = needs::<F, D, S>(shader, false);
+    let mut raster = Raster { shader, band, window, needs, setup, rows };
+    raster.draw(vertices.each_ref(), cull, &mut ());
     Ok(())
 }
 
-#[inline(never)]
-fn draw_checked<F, D, S>(
-    vertices: [&ScreenVertex; 3],
-    cull: Cull,
-    straight: Straight,
-    shader: &S,
-    band: &mut Band<'_, F, D>,
-    window: &Window,
-    setup: &mut TriangleSetup,
-    stats: &mut impl Count,
-) where
+fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, is_orthographic: bool) -> Needs {
+    Needs {
+        inputs: shader.inputs(),
+        straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
+        every_pixel: S::Quality::EVERY_PIXEL,
+        texture_scale: shader.texture_scale().min(8),
+        depth: !D::ALWAYS_PASSES,
+    }
+}
+
+/// The stages from set-up on.
+struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
+    shader: &'a S,
+    band: &'a mut Band<'b, F, D>,
+    window: Window,
+    needs: Needs,
+    setup: TriangleSetup,
+    rows: Rows,
+}
+
+impl<F, D, S> Raster<'_, '_, F, D, S>
+where
     F: PixelFormat,
     D: DepthFormat,
     S: Shader<F>,
 {
-    let Some(triangle) = Oriented::new(vertices, cull) else {
-        return stats.count(|stats| &mut stats.culled);
-    };
-    if !window.touches(&triangle) {
-        return stats.count(|stats| &mut stats.out_of_sight);
+    #[inline]
+    fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
+        match Oriented::new(vertices, cull) {
+            Some(triangle) => self.draw_oriented(&triangle, stats),
+            None => stats.count(|stats| &mut stats.culled),
+        }
     }
-    stats.count(|stats| &mut stats.drawn);
-    let (inputs, texture_scale) = (shader.inputs(), shader.texture_scale().min(8));
-    setup.set(
-        &triangle,
-        &Needs {
-            inputs,
-            straight,
-            every_pixel: S::Quality::EVERY_PIXEL,
-            texture_scale,
-            depth: !D::ALWAYS_PASSES,
-        },
-    );
-    band.draw(setup, window, shader);
+
+    #[inline(never)]
+    fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
+        if !self.window.touches(triangle) {
+            return stats.count(|stats| &mut stats.out_of_sight);
+        }
+        stats.count(|stats| &mut stats.drawn);
+        self.setup.set(triangle, &self.needs);
+        self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
+    }
 }
 
 /// A vertex lies outside the guard band, or its texture coordinates are out of range.

@@ -29,5 +29,5 @@ pub use setup::Cull;
 pub(crate) use setup::TriangleSetup;
 pub use shade::{Affine, Exact, Inputs, Quality, QuarterPixel, Shader, Varying};
 pub use span::Span;
-pub(crate) use span::Window;
+pub(crate) use span::{Rows, Window};
 pub use stats::Stats;

@@ -33,15 +33,14 @@ impl Slopes {
         let rise = rise.map(|rise| rise >> dropped);
         let (up, down) =
             ((self.zeros + dropped).saturating_sub(28), 28u32.saturating_sub(self.zeros + dropped));
-        let mut steps = [0; 2];
-        for axis in 0..2 {
-            let [b, c] = self.edges[axis];
+        let steps = self.edges.map(|[b, c]| {
             let slope = mul_17(rise[0] * b + rise[1] * c, self.reciprocal);
-            let step = (slope << (up & 31)) >> (down & 31);
+            (slope << (up & 31)) >> (down & 31)
+        });
+        for (axis, step) in steps.into_iter().enumerate() {
             origin = origin
                 .wrapping_add_signed((step >> 4) * self.to_center[axis])
                 .wrapping_sub(self.pixel[axis].wrapping_mul(step) as u32);
-            steps[axis] = step;
         }
         Plane { origin, steps }
     }
@@ -57,7 +56,11 @@ impl TriangleSetup {
         if largest >= 1 << 10 || largest * 4 > triangle.area {
             return false;
         }
-        let q = triangle.vertices.map(|vertex| vertex.q.to_bits().clamp(1, i32::MAX as u32));
+        let q = triangle.vertices.map(|vertex| vertex.q.to_bits());
+        // Depth must not wrap where rounding takes it out of 0 … 2³¹.
+        if q.iter().any(|q| q.wrapping_sub(2048) > (1 << 31) - 4096) {
+            return false;
+        }
         let bend = match needs.straight {
             Straight::Always => None,
             Straight::Below(limit) => {
@@ -76,14 +79,18 @@ impl TriangleSetup {
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
         if needs.depth {
-            let z = q.map(|q| q.clamp(2048, (1 << 31) - 2048));
-            let rise = [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32);
+            let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
             if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
                 return false;
             }
-            self.z = slopes.plane(z[0], rise);
-            // 1/1024 of which is a quarter of a depth step.
-            if self.z.steps.iter().any(|step| step.unsigned_abs() > 1 << 23) {
+            self.z = slopes.plane(q[0], rise);
+            // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
+            if self
+                .z
+                .steps
+                .iter()
+                .any(|step| step.unsigned_abs() >> 27 != 0 || (step.unsigned_abs() >> 8) * largest > 1 << 25)
+            {
                 return false;
             }
         }

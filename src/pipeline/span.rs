@@ -18,8 +18,8 @@
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
 use super::setup::{Oriented, TriangleSetup};
-use crate::math::recip::{Reciprocal, corrected, short};
-use crate::num::{I12F4, mul_17};
+use crate::math::recip::{Reciprocal, quotient_of_10_bits};
+use crate::num::I12F4;
 use crate::scene::Viewport;
 use core::ops::Range;
 
@@ -56,8 +56,9 @@ impl<'a> Span<'a> {
         self.setup.gray
     }
 
-    pub(crate) const fn setup(&self) -> &'a TriangleSetup {
-        self.setup
+    /// Without its first pixels.
+    pub(crate) const fn ahead(&self, pixels: usize) -> Self {
+        Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
     }
 
     /// q = near/w with 31 fraction bits at the first pixel, and its step.
@@ -67,60 +68,132 @@ impl<'a> Span<'a> {
 }
 
 /// An edge from row to row.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Edge {
-    /// Pixel centres left of the edge.
+    /// Pixel centres left of the edge, with [`FRACTION`] bits: the fraction of a short edge, and none of a long one.
     x: i32,
-    /// By how much the edge lies right of where it would meet the centre before, 0 … `divisor` − 1.
-    remainder: i32,
     slope: i32,
+    /// Of a long edge: by how much it lies right of where it would meet the centre before, 0 … `divisor` − 1.
+    remainder: i32,
     slope_remainder: i32,
     /// 16·dy.
     divisor: i32,
 }
 
+const FRACTION: u32 = 20;
+
 impl Edge {
     /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
-    fn new(top: [i32; 2], bottom: [i32; 2], row: i32) -> Self {
+    #[cold]
+    #[inline(never)]
+    fn long(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
-        if dy < 1 << 10 && dx.abs() < 1 << 10 {
-            return Self::short([dx, dy], top, row);
-        }
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
         // −E at centre 0, plus divisor − 1 to round up: below 16392·32752 + 32752² + 524032 < 2³¹.
         let below = row * 16 + 8 - top[1];
         let (x, remainder) = reciprocal.div_rem((top[0] - 8) * dy + below * dx + divisor - 1, divisor);
         let (slope, slope_remainder) = reciprocal.div_rem(16 * dx, divisor);
-        Self { x, remainder, slope, slope_remainder, divisor }
+        *self = Self { x: x << FRACTION, slope: slope << FRACTION, remainder, slope_remainder, divisor };
     }
 
-    /// An edge less than 64 pixels wide and high, likewise.
+    /// Likewise, at most 32 pixels wide and less high: without a remainder.
+    ///
+    /// The number is a multiple of 1/16dy, rounded up. 2⁻¹⁴ less, half of the least such step, may be wrong by just as much. The
+    /// reciprocal is, by 2⁻²⁰, and makes |dx|·2⁻²⁴ ≤ 2⁻¹⁵ of x; the slope's rounding makes 2⁻²¹ a row, 2⁻¹⁶ at most.
     #[inline]
-    fn short([dx, dy]: [i32; 2], top: [i32; 2], row: i32) -> Self {
-        let divisor = 16 * dy;
-        let (mut mantissa, mut zeros) = ((dy as u32) << 22, 22);
-        while (mantissa as i32) > 0 {
-            (mantissa, zeros) = (mantissa << 1, zeros + 1);
-        }
-        // 1/dy = reciprocal · 2^(zeros − 48): off by 2⁻¹⁷, so quotients below 2¹⁷ by less than 1.
-        let reciprocal = short(mantissa);
+    fn short(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
+        let slope = quotient_of_10_bits(bottom[0] - top[0], bottom[1] - top[1]);
         let below = row * 16 + 8 - top[1];
-        // Below 2²¹.
-        let numerator = ((top[0] & 15) - 8) * dy + below * dx + divisor - 1;
-        let x = mul_17(numerator << 8, reciprocal) >> (44 - zeros);
-        let (x, remainder) = corrected(x, numerator, divisor);
-        let (slope, slope_remainder) = corrected((dx * reciprocal as i32) >> (48 - zeros), 16 * dx, divisor);
-        Self { x: (top[0] >> 4) + x, remainder, slope, slope_remainder, divisor }
+        self.x = ((top[0] + 8) << (FRACTION - 4)) + ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
+        self.slope = slope;
     }
 
-    fn next_row(&mut self) {
-        self.x += self.slope;
+    /// To the next row. At a triangle's end x may lie beyond all columns.
+    #[inline]
+    fn next(&mut self) -> i32 {
+        let x = self.x >> FRACTION;
+        self.x = self.x.wrapping_add(self.slope);
+        x
+    }
+
+    fn carry(&mut self) {
         self.remainder += self.slope_remainder;
         if self.remainder >= self.divisor {
             self.remainder -= self.divisor;
-            self.x += 1;
+            self.x = self.x.wrapping_add(1 << FRACTION);
         }
+    }
+}
+
+/// A triangle's rows within a window. One is used for all triangles of a draw.
+#[derive(Debug, Default)]
+pub(crate) struct Rows {
+    left: Edge,
+    right: Edge,
+    row: i32,
+    /// Where the lower edge begins, and the end of the rows.
+    knee: i32,
+    end: i32,
+    /// The lower edge's ends.
+    lower: [[i32; 2]; 2],
+    lower_is_right: bool,
+    is_long: bool,
+    /// Whether some of the triangle lies beyond the window's first or last column.
+    is_cut: bool,
+}
+
+impl Rows {
+    /// For corners that run clockwise.
+    #[inline(never)]
+    fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
+        // From the top down the right to `next`, and down the left to `last`.
+        let [top, next, last] = if a[1] <= b[1] && a[1] <= c[1] {
+            [a, b, c]
+        } else if b[1] <= c[1] {
+            [b, c, a]
+        } else {
+            [c, a, b]
+        };
+        let (next_row, last_row) = (first_row(next[1]), first_row(last[1]));
+        self.row = first_row(top[1]).max(window.rows.start);
+        self.end = next_row.max(last_row).min(window.rows.end);
+        self.knee = next_row.min(last_row).min(self.end);
+        if self.row >= self.end {
+            return;
+        }
+        let Range { start, end } = window.columns;
+        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
+        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
+        let wide = |from: i32, to: i32| to - from + (1 << 9);
+        self.is_long = (wide(top[0], next[0]) | wide(top[0], last[0]) | wide(next[0], last[0])) as u32 >> 10
+            != 0
+            || (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
+        self.lower_is_right = next_row < last_row;
+        self.lower = if self.lower_is_right { [*next, *last] } else { [*last, *next] };
+        if next_row > self.row {
+            self.set_edge(true, top, next);
+        }
+        if last_row > self.row {
+            self.set_edge(false, top, last);
+        }
+    }
+
+    #[inline(never)]
+    fn set_edge(&mut self, is_right: bool, top: &[i32; 2], bottom: &[i32; 2]) {
+        let edge = if is_right { &mut self.right } else { &mut self.left };
+        if self.is_long {
+            edge.long(*top, *bottom, self.row);
+        } else {
+            edge.short(*top, *bottom, self.row);
+        }
+    }
+
+    /// The edge that begins at the knee takes the place of the one that ends there.
+    #[inline(never)]
+    fn pass_knee(&mut self) {
+        let [top, bottom] = self.lower;
+        self.set_edge(self.lower_is_right, &top, &bottom);
     }
 }
 
@@ -165,40 +238,63 @@ impl Window {
 }
 
 impl TriangleSetup {
-    /// Hands on every row of the triangle within a window, as its row and its pixels.
-    pub(crate) fn rows(&self, window: &Window, mut emit: impl FnMut(i32, Range<i32>)) {
-        let [mut top, mut middle, mut bottom] = self.corners;
-        if middle[1] < top[1] {
-            (top, middle) = (middle, top);
-        }
-        if bottom[1] < middle[1] {
-            (middle, bottom) = (bottom, middle);
-            if middle[1] < top[1] {
-                (top, middle) = (middle, top);
+    /// Hands on every row of the triangle within a window: the row, the first column and the one behind the last.
+    #[inline]
+    pub(crate) fn rows(&self, rows: &mut Rows, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
+        rows.start(&self.corners, window);
+        let mut y = rows.row;
+        let is_simple = !rows.is_long && !rows.is_cut;
+        while y < rows.end {
+            let stop = if y < rows.knee {
+                rows.knee
+            } else {
+                rows.row = y;
+                rows.pass_knee();
+                rows.end
+            };
+            while y < stop {
+                let (mut left, mut right) = (rows.left.next(), rows.right.next());
+                if !is_simple {
+                    left = left.max(window.columns.start);
+                    right = right.min(window.columns.end);
+                    if rows.is_long {
+                        rows.left.carry();
+                        rows.right.carry();
+                    }
+                }
+                if left < right {
+                    emit(y, left, right);
+                }
+                y += 1;
             }
         }
-        let start = first_row(top[1]).max(window.rows.start);
-        let end = first_row(bottom[1]).min(window.rows.end);
-        if start >= end {
-            return;
-        }
-        let knee = first_row(middle[1]).clamp(start, end);
-        let long_is_left =
-            (bottom[0] - top[0]) * (middle[1] - top[1]) - (bottom[1] - top[1]) * (middle[0] - top[0]) < 0;
-        let mut long = Edge::new(top, bottom, start);
-        let mut short =
-            if start < knee { Edge::new(top, middle, start) } else { Edge::new(middle, bottom, start) };
-        for y in start..end {
-            if y == knee && y > start {
-                short = Edge::new(middle, bottom, y);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_edges_of_all_sizes_count_exactly_in_every_row() {
+        let mut seed = 1_u32;
+        for dy in 1..1 << 9 {
+            for dx in -512..=512 {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let top = [(seed >> 16) as i32 % 15_000, (seed >> 4) as i32 & 15];
+                let bottom = [top[0] + dx, top[1] + dy];
+                let (start, end) = (first_row(top[1]), first_row(bottom[1]));
+                let mut edge = Edge::default();
+                // As the window may have it, from any row on.
+                let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);
+                if first < end {
+                    edge.short(top, bottom, first);
+                }
+                for row in first..end {
+                    let exactly = (top[0] - 8) * dy + (row * 16 + 8 - top[1]) * dx + 16 * dy - 1;
+                    assert_eq!(edge.next(), exactly.div_euclid(16 * dy), "{top:?} to {bottom:?}, row {row}");
+                }
             }
-            let (left, right) = if long_is_left { (long.x, short.x) } else { (short.x, long.x) };
-            let pixels = left.max(window.columns.start)..right.min(window.columns.end);
-            if pixels.start < pixels.end {
-                emit(y, pixels);
-            }
-            long.next_row();
-            short.next_row();
         }
     }
 }

@@ -12,7 +12,7 @@
 //! |Δuᵢⱼ| / (|Δxᵢⱼ| + |Δyᵢⱼ|), and counts as at least 1 texel or 1/255.
 
 use crate::math::recip::short;
-use crate::num::{mul_16, mul_17};
+use crate::num::mul_16;
 
 /// Which triangles are straight in some quality.
 #[derive(Clone, Copy, Debug)]
@@ -49,9 +49,9 @@ impl Bend {
                 length(across[0], down[0]),
                 length(across[0] + across[1], down[0] + down[1]),
             ],
-            // Rounded up.
+            // Rounded up; 15 bits times 17.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
-                .map(|fall| (mul_17((fall << zeros) as i32, reciprocal) as u32 >> 16) + 1),
+                .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
         })
     }
 
@@ -70,7 +70,7 @@ impl Bend {
         // 4 · error, at most a quarter of a rise.
         let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
         let error = (error >> 8) + 1;
-        error <= (unit >> 8) * (limit >> 8) >> 8
+        error <= ((unit >> 8) * (limit >> 8)) >> 8
             || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
     }
 }
