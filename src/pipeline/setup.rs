@@ -196,11 +196,16 @@ impl TriangleSetup {
     pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         self.corners = triangle.vertices.map(position);
         self.sliver = false;
-        let is_gray = |vertex: &ScreenVertex| {
-            let [red, green, blue] = vertex.color;
-            red == green && green == blue
-        };
-        self.gray = triangle.vertices.into_iter().all(is_gray);
+        if needs.inputs == Inputs::None && !needs.depth {
+            return;
+        }
+        if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
+            let is_gray = |vertex: &ScreenVertex| {
+                let [red, green, blue] = vertex.color;
+                red == green && green == blue
+            };
+            self.gray = triangle.vertices.into_iter().all(is_gray);
+        }
         if !self.set_small_planes(triangle, needs) {
             self.set_any_planes(triangle, needs);
         }

@@ -1,12 +1,13 @@
-//! Stage 3 for small triangles, which most of a mesh's are: short products, no division.
+//! Stage 3 for small triangles, which most of a mesh's are: short products.
 //!
-//! A triangle of at most 64 pixels across whose attributes are [straight](super::setup) needs planes that are exact enough
+//! A triangle of at most 64 pixels across whose distances differ by less than a quarter needs planes that are exact enough
 //! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a
 //! sum of products without rounding where rises have 19 bits, times 1/area with a relative error of 2⁻¹⁷. So after 64
 //! columns and rows a value is off by 1/1024 of its change over one pixel.
 
 use super::attribute::Attribute;
 use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
+use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short;
 use crate::num::mul_17;
@@ -25,11 +26,17 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// From the value at corner 0 and the rise, within ±2²⁷, from there to corners 1 and 2.
+    /// From the value at corner 0 and the rise from there to corners 1 and 2; a step has to fit 32 bits.
     #[inline]
     fn plane(&self, mut origin: u32, rise: [i32; 2]) -> Plane {
-        let is_short = (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 19;
-        let dropped = if is_short { 0 } else { 8 };
+        let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
+        let dropped = if size < 1 << 19 {
+            0
+        } else if size < 1 << 27 {
+            8
+        } else {
+            12
+        };
         let rise = rise.map(|rise| rise >> dropped);
         let (up, down) =
             ((self.zeros + dropped).saturating_sub(28), 28u32.saturating_sub(self.zeros + dropped));
@@ -47,7 +54,7 @@ impl Slopes {
 }
 
 impl TriangleSetup {
-    /// Sets all planes of a small triangle whose attributes are straight: false, and nothing of use done, for any other.
+    /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
     #[inline(never)]
     pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) -> bool {
         let edges = edges(&self.corners);
@@ -62,13 +69,13 @@ impl TriangleSetup {
             return false;
         }
         let bend = match needs.straight {
-            Straight::Always => None,
-            Straight::Below(limit) => {
+            Straight::Below(limit) if needs.inputs != Inputs::None => {
                 let Some(bend) = Bend::new(&edges, q) else {
                     return false;
                 };
                 if bend.is_straight(limit) { None } else { Some((bend, limit)) }
             }
+            _ => None,
         };
         let zeros = triangle.area.leading_zeros();
         let slopes = Slopes {
@@ -94,8 +101,7 @@ impl TriangleSetup {
                 return false;
             }
         }
-        self.straight = true;
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        self.straight = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             let (mut attribute, rise) = Attribute::between(at, scale_log2);
             if attribute.range >= 1 << 27 {
                 return false;
@@ -104,6 +110,33 @@ impl TriangleSetup {
             self.attributes[i] = attribute;
             bend.as_ref()
                 .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2))
+        });
+        // Steps of q and (u − u₀)·q, which take all of 32 bits, need triangles of two pixels' thickness.
+        self.straight
+            || !needs.every_pixel
+                && largest * 32 <= triangle.area
+                && self.set_divided(triangle, needs, &slopes, q)
+    }
+
+    /// Sets the planes of q and of attributes that are to be divided by it. Distances differ by less than a quarter, so that 17
+    /// bits of q are enough.
+    fn set_divided(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes, q: [u32; 3]) -> bool {
+        let up = q[0].leading_zeros() - 1;
+        let q = q.map(|q| q << up);
+        self.q_min = q[1].min(q[2]);
+        self.q = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let (mut attribute, rise) = Attribute::between(at, scale_log2);
+            if attribute.range >= 1 << 27 {
+                return false;
+            }
+            // 29 bits times 17, of which the upper 30 are kept.
+            let up = (attribute.range | 1).leading_zeros() - 3;
+            let product = |i: usize| mul_17(rise[i] << up, q[i + 1] >> 14);
+            attribute.shift = 2 + up as i32;
+            attribute.plane = slopes.plane(0, [product(0), product(1)]);
+            self.attributes[i] = attribute;
+            true
         })
     }
 }
