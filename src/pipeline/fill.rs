@@ -1,5 +1,6 @@
 //! Fills: runs of pixels along which attributes are linear.
 
+use super::shade::LONGEST;
 use crate::scene::Texture;
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -11,7 +12,7 @@ pub(crate) trait Fill<const N: usize> {
     /// The longest bent run that is exact enough.
     #[inline]
     fn longest(&self) -> i32 {
-        16
+        LONGEST as i32
     }
 
     /// Attribute `i` of I16F16 times 2^`scale_log2` in the units of bent runs.
@@ -173,7 +174,7 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     #[inline]
     fn longest(&self) -> i32 {
         let [a, b] = self.texture.log2();
-        if a > 6 || b > 6 { 8 } else { 16 }
+        if a > 6 || b > 6 { 8 } else { LONGEST as i32 }
     }
 
     #[inline]
