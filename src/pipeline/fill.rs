@@ -88,7 +88,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         Self { texture, is_packed: texture.is_packable(scale_log2), format: PhantomData }
     }
 
-    /// Pixels along packed coordinates: at most 32, or 31 if `BENT`.
+    /// Pixels along packed coordinates.
     #[inline]
     fn run<const BENT: bool>(&self, pixels: &mut [F::Word], packed: u32, step: u32, bend: u32) {
         let texels = self.texture.texels();
@@ -197,7 +197,8 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
         if !self.is_packed {
             return self.bent(pixels, [u, v], [u_step, v_step], [0; 2]);
         }
-        let log2 = if a > 6 || b > 6 { 3 } else { 5 };
+        // After 64 pixels a truncated step is off by 1/16 texel of 64.
+        let log2 = if a > 6 || b > 6 { 3 } else { 6 };
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         for block in pixels.chunks_mut(1 << log2) {
             self.run::<false>(block, packed_from([u >> a, v >> b], u_step), step, 0);

@@ -287,12 +287,12 @@ impl<'a, const N: usize> Walk<'a, N> {
         core::array::from_fn(|i| self.attributes[i].exact(self.values[i], q))
     }
 
-    /// Whether q is so nearly the same for some pixels that attributes are linear: (length)²·|q′|/q ≤ 3/16, the error of
-    /// going along the tangent.
+    /// Whether q is so nearly the same for some pixels that attributes are linear: (length)²·|q′|/q ≤ 1/8, the error of going
+    /// along the tangent.
     #[inline]
     fn is_level(&self, pixels: i32) -> bool {
         let rise = self.q_step.unsigned_abs();
-        rise < 1 << 12 && rise * (pixels * pixels) as u32 <= (self.least(pixels) >> 4) * 3
+        rise < 1 << 12 && rise * (pixels * pixels) as u32 <= self.least(pixels) >> 3
     }
 
     /// The least q of the next pixels.
