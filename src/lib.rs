@@ -51,6 +51,8 @@
 //! # }
 //! ```
 //!
+//! What a frame takes, and how to estimate it: [`cost`]; its pictures' exactness is derived in the source, where it arises.
+//!
 //! # How it works
 //!
 //! Data flows one way, scene → pipeline → target, and every arrow of the pipeline is one small struct:
@@ -67,16 +69,20 @@
 //!   the barycentric weights) and, for every attribute u, the integers q = near/w and (u − u₀)·q, which
 //!   are linear on the screen where u itself is not.
 //! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
-//! - **shade** divides, at every pixel or only as often as ¼ pixel asks for, by a table of reciprocals.
+//! - **shade** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
+//!   divisions attributes follow the quadratic that has both ends and the slopes there.
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
-//! particular to a surface is a [`Shader`], of which [`Material`] is the one that comes with the crate.
+//! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(unreachable_pub)]
 
 #[cfg(test)]
 extern crate std;
+
+#[doc = include_str!("cost.md")]
+pub mod cost {}
 
 mod math;
 pub mod num;

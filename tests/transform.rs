@@ -136,8 +136,10 @@ fn projected(name: &str, cases: u32, orthographic: bool) {
         let room = 0.5 + 16.0 / 1024.0 * if orthographic { 1.0 } else { (0.25 / w).max(1.0) };
         prop_assert!(error <= room, "{} of 1/16 pixel at w {}, {:?} {:?}", error, w, at, camera);
         let q = f64::from(projected.q.to_bits()) / 2_f64.powi(31);
-        // A depth step. Of w the last bit is 2⁻²⁴ (times the scale, which is 1 here): half of that is more nearer than 2⁻⁹.
-        let steps = if orthographic { 1.0 } else { (2_f64.powi(-9) * exact.q(w) / w).max(1.0) };
+        // A depth step. Of w the last bit is 2⁻²⁴ (times the scale, which is 1 here): half of that is more nearer than 2⁻⁹,
+        // and 2⁻²⁰ of q, by which the table of reciprocals is off, is 1/16 of a step.
+        let steps =
+            if orthographic { 1.0 } else { (exact.q(w) * (2_f64.powi(-9) / w + 1.0 / 16.0)).max(1.0) };
         prop_assert!(
             (q - exact.q(w).min(1.0)).abs() < steps / 65536.0,
             "q {} of {} at w {}",

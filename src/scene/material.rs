@@ -212,8 +212,8 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     }
 }
 
-/// A [`Material`] that is a texture, and can be nothing else: what a program links that draws with no other is a third of
-/// what it is with [`Material`], which has loops for every surface.
+/// A [`Material`] that is a texture, and can be nothing else: a program that draws with no other is about half as large as
+/// with [`Material`], which has loops for every surface.
 ///
 /// ```
 /// use fixel::{Material, Texture, Textured};
