@@ -48,8 +48,6 @@ const SCREEN: Strip = Strip::new(48, 40, 0);
 
 /// How far, in pixels, a corner may be from where it belongs, along x and along y.
 const SNAPPING: f64 = 1.0 / 16.0;
-/// The finest unit of distance before the camera.
-const W_UNIT: f64 = 1.0 / (1 << 28) as f64;
 /// How far, in pixels, the outline may be from where it belongs.
 const MARGIN: f64 = 1.0 / 8.0;
 /// A triangle thinner than this many pixels may be turned over when its corners are snapped.
@@ -511,10 +509,7 @@ fn attribute(
         measured.raw[quality] = measured.raw[quality].max((value - exact_value).abs() / step);
         measured.attributes += 1;
     }
-    // Distances are multiples of 2⁻²⁸ at best, rounded in the corners and again where clipping cuts: much of a near plane at
-    // 2⁻¹⁶.
-    let low = ends(&|hit| exact.q(hit.w + W_UNIT)).0;
-    let high = ends(&|hit| exact.q((hit.w - W_UNIT).max(f64::MIN_POSITIVE))).1;
+    let (low, high) = ends(&|hit| exact.q(hit.w));
     let steps = |q: f64| q * 65536.0;
     let q = f64::from(q) / 2_f64.powi(31);
     let error = steps((low - q).max(q - high).max(0.0));

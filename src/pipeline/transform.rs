@@ -27,6 +27,10 @@ pub(super) const fn focal_log2(focal: I16F16) -> i32 {
     16 - focal.to_bits().leading_zeros() as i32
 }
 
+/// The most fraction bits of clip coordinates. The near plane may be one last bit of the world, 2⁻¹⁶, away, where w is not to
+/// be rounded to a thousandth.
+const FINEST: i32 = 34;
+
 /// From mesh space to clip space.
 pub(super) struct ToClip {
     /// For x, y and w.
@@ -95,10 +99,13 @@ impl ToClip {
         let excess = bits(matrix.as_flattened()) - 30;
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
-        let unit_bits = (59 - bits(&translation)).min(fraction_bits - 5).min(28);
+        let unit_bits = (59 - bits(&translation)).min(fraction_bits - 5).min(FINEST);
         // Without perspective depth reaches from plane to plane: the far one has to be among the clip coordinates.
-        let far_bits =
-            if projection.orthographic { 15 + projection.far.to_bits().leading_zeros() as i32 } else { 28 };
+        let far_bits = if projection.orthographic {
+            15 + projection.far.to_bits().leading_zeros() as i32
+        } else {
+            FINEST
+        };
         let unit_bits = unit_bits.min(far_bits);
         let to_i32 = |value, shift: i32| {
             (if shift >= 0 { shift_round(value, shift.min(63) as u32) } else { value << -shift.max(-63) })
@@ -119,7 +126,7 @@ impl ToClip {
         Self { rows, unit_bits, scale: pose.scale.to_bits() }
     }
 
-    /// Fraction bits of clip coordinates, 10 … 28.
+    /// Fraction bits of clip coordinates, 10 … 34.
     pub(super) const fn unit_bits(&self) -> i32 {
         self.unit_bits
     }
