@@ -134,29 +134,34 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 }
 
-/// Texels of a texture that repeats, with coordinates packed as [`Texels`](super::Texels) has them, times light.
+/// Texels times light; of a texture that repeats, with coordinates packed as [`Texels`](super::Texels) has them.
 pub(crate) struct LitTexels<'a, F, C> {
     texture: &'a Texture<'a>,
+    is_packed: bool,
     channels: PhantomData<(F, C)>,
 }
 
 impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
-    /// Of a texture that is packable.
     #[inline]
-    pub(crate) fn new(texture: &'a Texture<'a>) -> Self {
-        Self { texture, channels: PhantomData }
+    pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32) -> Self {
+        Self { texture, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
     }
 
-    /// Along packed coordinates and light: where it begins, its step, and what is added to that each time.
+    /// Where a run of u and v, and of light, begins, its step, and what is added to that each time; in the units of bent runs.
     #[inline]
     fn run<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        [mut packed, mut step, bend]: [u32; 3],
+        [at, step, bend]: [[i32; 2]; 3],
         [mut light, mut light_step, light_bend]: [C; 3],
     ) where
         C: Channels<M>,
     {
+        if !self.is_packed {
+            return self.run_unpacked(pixels, [at, step, bend], [light, light_step, light_bend]);
+        }
+        let mut packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
+        let (mut step, bend) = (packed_step(step), packed_step(bend));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
@@ -164,25 +169,44 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         }
     }
 
+    /// As [`LitTexels::run`] of a texture that is not packable.
+    #[inline(never)]
+    fn run_unpacked<const M: usize>(
+        &self,
+        pixels: &mut [F::Word],
+        [mut at, mut step, bend]: [[i32; 2]; 3],
+        [mut light, mut light_step, light_bend]: [C; 3],
+    ) where
+        C: Channels<M>,
+    {
+        for pixel in pixels {
+            *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
+            for i in 0..2 {
+                (at[i], step[i]) = (at[i].wrapping_add(step[i]), step[i].wrapping_add(bend[i]));
+            }
+            (light, light_step) = (light.plus(light_step), light_step.plus(light_bend));
+        }
+    }
+
     #[inline]
     fn long<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        ([mut u, mut v], [u_step, v_step]): ([i32; 2], [i32; 2]),
+        (mut at, step): ([i32; 2], [i32; 2]),
         (mut light, light_step): ([i32; M], [i32; M]),
     ) where
         C: Channels<M>,
     {
-        let [a, b] = self.texture.log2();
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
+        let unit_step = [shifted(step[0], a), shifted(step[1], b)];
         let (packed_light_step, none) =
             (C::pack(light_step.map(|step| shifted(step, C::DROPPED))), C::pack([0; M]));
         let log2 = if a > 6 || b > 6 { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
             let packed_light = C::pack(light.map(|channel| channel >> C::DROPPED));
-            let packed = packed_from([u >> a, v >> b], u_step);
-            self.run(block, [packed, step, 0], [packed_light, packed_light_step, none]);
-            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+            let uv = [[at[0] >> a, at[1] >> b], unit_step, [0; 2]];
+            self.run(block, uv, [packed_light, packed_light_step, none]);
+            at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
             for (light, step) in light.iter_mut().zip(light_step) {
                 *light = light.wrapping_add(step << log2);
             }
@@ -198,20 +222,24 @@ macro_rules! fill_of_lit_texels {
             #[inline]
             fn longest(&self) -> i32 {
                 let [a, b] = self.texture.log2();
-                if a > 6 || b > 6 { 8 } else { C::LONGEST }
+                if self.is_packed && (a > 6 || b > 6) { 8 } else { C::LONGEST }
             }
 
             #[inline]
             fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
-                let dropped =
-                    if i < 2 { self.texture.log2()[i].wrapping_sub(scale_log2) } else { C::DROPPED };
-                value >> (dropped & 31)
+                match i {
+                    0 | 1 if self.is_packed => {
+                        value >> (self.texture.log2()[i].wrapping_sub(scale_log2) & 31)
+                    }
+                    0 | 1 => value << scale_log2,
+                    _ => value >> C::DROPPED,
+                }
             }
 
             #[inline]
             fn pixel(&self, [u, v, light @ ..]: [i32; $n]) -> F::Word {
                 let light = C::pack(light.map(|channel| channel >> C::DROPPED));
-                lit::<F>(self.texture.fetch_repeat(u >> 16, v >> 16), light.rgb())
+                lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb())
             }
 
             #[inline]
@@ -228,8 +256,7 @@ macro_rules! fill_of_lit_texels {
             fn bent(&self, pixels: &mut [F::Word], at: [i32; $n], step: [i32; $n], bend: [i32; $n]) {
                 let ([u, v, at @ ..], [u_step, v_step, step @ ..]) = (at, step);
                 let [u_bend, v_bend, bend @ ..] = bend;
-                let packed = packed_from([u, v], u_step.wrapping_mul(2).wrapping_add(u_bend));
-                let uv = [packed, packed_step([u_step, v_step]), packed_step([u_bend, v_bend])];
+                let uv = [[u, v], [u_step, v_step], [u_bend, v_bend]];
                 self.run(pixels, uv, [at, step, bend].map(C::pack));
             }
         }

@@ -186,11 +186,12 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
             (Surface::Textured(texture), Some(_)) => {
                 // `Exact` has no use for coordinates and light in 16 bits.
                 let scale_log2 = self.texture_scale.into();
-                let packable = !Q::EVERY_PIXEL && texture.is_packable(scale_log2);
-                match (packable, span.is_gray()) {
-                    (true, true) => span.fill::<Q, 3, _>(pixels, &LitTexels::<F, Gray>::new(texture)),
+                match (!Q::EVERY_PIXEL, span.is_gray()) {
+                    (true, true) => {
+                        span.fill::<Q, 3, _>(pixels, &LitTexels::<F, Gray>::new(texture, scale_log2));
+                    }
                     (true, false) => {
-                        span.fill::<Q, 5, _>(pixels, &LitTexels::<F, RedBlueGreen>::new(texture))
+                        span.fill::<Q, 5, _>(pixels, &LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
                     }
                     (false, true) => span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {
                         lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3]))
