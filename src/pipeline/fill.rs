@@ -72,7 +72,7 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
 /// ```
 ///
 /// With the number of texels an array's, the compiler sees that the index cannot be outside it: 9 cycles a pixel on a
-/// Cortex-M0+ where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and whatever has as many.
+/// Cortex-M0+ (18 if the run is bent) where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and whatever has as many.
 ///
 /// A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So runs are so short, before they
 /// start anew from 32 bits, that all of that is 1/16 texel at most.
@@ -101,69 +101,40 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         }
     }
 
-    /// In straight lines of code, without a loop: of one the compiler would keep multiples of `step` and `bend` in memory.
     #[inline]
     fn run_sized<const COUNT: usize, const BENT: bool>(
         &self,
         pixels: &mut [F::Word],
         texels: &[u16; COUNT],
-        packed: u32,
-        step: u32,
+        mut packed: u32,
+        mut step: u32,
         bend: u32,
     ) {
         let [mask, multiplier] = self.texture.mask_and_multiplier();
-        let mut line = Line { texels, mask, multiplier, packed, step, bend };
-        let (fours, rest) = pixels.as_chunks_mut();
-        for four in fours {
+        let mut draw = |pixel: &mut F::Word, bend: u32| {
+            let index = (packed & mask).wrapping_mul(multiplier) >> (32 - COUNT.trailing_zeros());
+            *pixel = F::rgb565(texels[index as usize]);
+            packed = packed.wrapping_add(step);
             if BENT {
-                // The compiler would keep multiples of it in memory.
-                line.bend = core::hint::black_box(bend);
+                step = step.wrapping_add(bend);
             }
-            line.draw::<F, 4, BENT>(four);
+        };
+        let (fours, rest) = pixels.as_chunks_mut::<4>();
+        for four in fours {
+            // The compiler would keep four multiples of it in memory.
+            let bend = if BENT { core::hint::black_box(bend) } else { 0 };
+            four.iter_mut().for_each(|pixel| draw(pixel, bend));
         }
-        for one in rest.as_chunks_mut().0 {
-            line.draw::<F, 1, BENT>(one);
-        }
+        rest.iter_mut().for_each(|pixel| draw(pixel, bend));
     }
 
     /// Of any size.
     #[inline(never)]
     fn run_checked(&self, pixels: &mut [F::Word], mut packed: u32, mut step: u32, bend: u32) {
-        let ([mask, multiplier], texels) = (self.texture.mask_and_multiplier(), self.texture.texels());
-        let shift = 32 - texels.len().trailing_zeros();
         for pixel in pixels {
-            let index = (packed & mask).wrapping_mul(multiplier) >> (shift & 31);
-            *pixel = F::rgb565(texels.get(index as usize).copied().unwrap_or(0));
+            *pixel = F::rgb565(self.texture.fetch_packed(packed));
             packed = packed.wrapping_add(step);
             step = step.wrapping_add(bend);
-        }
-    }
-}
-
-/// Pixels to come.
-struct Line<'a, const COUNT: usize> {
-    texels: &'a [u16; COUNT],
-    mask: u32,
-    multiplier: u32,
-    packed: u32,
-    step: u32,
-    bend: u32,
-}
-
-impl<const COUNT: usize> Line<'_, COUNT> {
-    #[inline]
-    fn draw<F: PixelFormat, const LENGTH: usize, const BENT: bool>(
-        &mut self,
-        pixels: &mut [F::Word; LENGTH],
-    ) {
-        for pixel in pixels {
-            let index =
-                (self.packed & self.mask).wrapping_mul(self.multiplier) >> (32 - COUNT.trailing_zeros());
-            *pixel = F::rgb565(self.texels[index as usize]);
-            self.packed = self.packed.wrapping_add(self.step);
-            if BENT {
-                self.step = self.step.wrapping_add(self.bend);
-            }
         }
     }
 }

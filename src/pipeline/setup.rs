@@ -21,7 +21,7 @@
 //!   |u₀ − u(p)| ≤ 2·M·d · q(p)/q₀, and |U(corner)| ≤ 4·M·d · q(p).
 //! - An error of k units in q (of 2⁻³⁰·q₀ or less) moves u by k·2⁻³⁰·q₀·|u₀ − u|/q ≤ k·2⁻²⁹·M·d.
 //! - An error of k units in U (of 2⁻²⁹·max|U|) moves u by k·2⁻²⁹·max|U|/q ≤ k·2⁻²⁷·M·d.
-//! - The reciprocal's 2⁻²⁰ moves u by 2⁻¹⁹·M·d.
+//! - The reciprocal's 2⁻²⁰ moves u by 2⁻¹⁹·M·d; the 17 bits of it that the default quality takes, by 2⁻¹⁶·M·d, 0.031 px at most.
 //!
 //! Each is kept as a plane: a value at pixel (0, 0) and one rounded step a column and a row, **in wrapping
 //! integers**. What the plane says far outside the triangle wraps, and wraps back: inside, where the true value fits 32
