@@ -376,17 +376,11 @@ impl Span<'_> {
             if length > 0 {
                 left -= length;
                 let bending = -(slope + next_slope);
+                let inverse = u32::from(INVERSES[length as usize & 31]);
                 let (mut step, mut bend) = ([0; N], [0; N]);
                 for i in 0..N {
                     let rise = next[i].wrapping_sub(at[i]);
-                    (step[i], bend[i]) = match length {
-                        16 => bent(rise, 16, bending, shifted::<4>),
-                        8 => bent(rise, 8, bending, shifted::<3>),
-                        _ => {
-                            let inverse = u32::from(INVERSES[length as usize & 31]);
-                            bent(rise, length, bending, |rise| towards_zero(mul_16(rise, inverse)))
-                        }
-                    };
+                    (step[i], bend[i]) = quadratic(rise, length, inverse, bending);
                 }
                 let count = (length + i32::from(left == 0)) as usize;
                 let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
@@ -409,15 +403,11 @@ impl Span<'_> {
 /// The first step and what is added to it each time, on the quadratic through both ends on which u′ changes as much as it should
 /// from one to the other, by −(u₁ − u₀)/L · (q′/q₀ + q′/q₁) · L. All is cut towards zero, so that no pixel lies beyond the end.
 #[inline]
-fn bent(rise: i32, length: i32, bending: i32, divide: impl Fn(i32) -> i32) -> (i32, i32) {
-    let bend = towards_zero(mul_16_signed(divide(rise) << 1, bending));
-    (divide(rise.wrapping_sub(bend.wrapping_mul(length * (length - 1) / 2))), bend)
-}
-
-/// A rise divided by 2^`LOG2`.
-#[inline]
-fn shifted<const LOG2: u32>(rise: i32) -> i32 {
-    rise.wrapping_add_unsigned((rise >> 31) as u32 >> (32 - LOG2)) >> LOG2
+fn quadratic(rise: i32, length: i32, inverse: u32, bending: i32) -> (i32, i32) {
+    let mean = towards_zero(mul_16(rise, inverse));
+    let bend = towards_zero(mul_16_signed(mean << 1, bending));
+    let straight = rise.wrapping_sub(bend.wrapping_mul(length * (length - 1) / 2));
+    (towards_zero(mul_16(straight, inverse)), bend)
 }
 
 /// Of a product rounded down: one more if it is negative.
