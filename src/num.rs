@@ -18,18 +18,16 @@
 
 pub use fixed::types::{I2F14, I2F30, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 
+/// No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps.
+const IS_ARMV6M: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
 /// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
 ///
 /// Most cores have an instruction for it. Armv6-M has not: there the compiler would call a library
 /// routine for 64 × 64 bits (52 instructions), so the product is put together from four 16-bit ones.
 #[inline]
 pub(crate) const fn wide(a: i32, b: i32) -> i64 {
-    // No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps.
-    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
-        wide_split(a, b)
-    } else {
-        a as i64 * b as i64
-    }
+    if IS_ARMV6M { wide_split(a, b) } else { a as i64 * b as i64 }
 }
 
 /// [`wide`] from four products of 16-bit halves, none of which overflows 32 bits.
@@ -49,11 +47,7 @@ const fn wide_split(a: i32, b: i32) -> i64 {
 /// `a · b / 2¹⁶` rounded down, for a `b` of 0 … 2¹⁶: two short products on Armv6-M.
 #[inline]
 pub(crate) const fn mul_16(a: i32, b: u32) -> i32 {
-    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
-        mul_16_split(a, b)
-    } else {
-        ((a as i64 * b as i64) >> 16) as i32
-    }
+    if IS_ARMV6M { mul_16_split(a, b) } else { ((a as i64 * b as i64) >> 16) as i32 }
 }
 
 #[inline]
@@ -64,7 +58,7 @@ const fn mul_16_split(a: i32, b: u32) -> i32 {
 /// `a · b / 2¹⁶` rounded down, for a `b` of −2¹⁵ … 2¹⁵ − 1: likewise. Beyond that some number.
 #[inline]
 pub(crate) const fn mul_16_signed(a: i32, b: i32) -> i32 {
-    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+    if IS_ARMV6M {
         mul_16_signed_split(a, b as i16 as i32)
     } else {
         ((a as i64 * b as i16 as i64) >> 16) as i32
@@ -79,11 +73,7 @@ const fn mul_16_signed_split(a: i32, b: i32) -> i32 {
 /// `a · b / 2¹⁶` rounded down, for an even part of `a` within ±2³⁰ and a `b` of 0 … 2¹⁷: likewise.
 #[inline]
 pub(crate) const fn mul_17(a: i32, b: u32) -> i32 {
-    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
-        mul_17_split(a, b)
-    } else {
-        (((a & !1) as i64 * b as i64) >> 16) as i32
-    }
+    if IS_ARMV6M { mul_17_split(a, b) } else { (((a & !1) as i64 * b as i64) >> 16) as i32 }
 }
 
 #[inline]
@@ -115,7 +105,7 @@ pub(crate) const fn mul_high_short(a: i32, b: u32) -> i32 {
 /// zero, and 4 for every 8 at first; clip coordinates have few.
 #[inline(always)]
 pub(crate) const fn normalised(value: u32) -> (u32, u32) {
-    if cfg!(all(target_arch = "arm", not(target_has_atomic = "32"))) {
+    if IS_ARMV6M {
         normalised_stepwise(value)
     } else {
         (value << value.leading_zeros(), value.leading_zeros())

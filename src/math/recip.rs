@@ -8,7 +8,7 @@
 //!
 //! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::wide;
+use crate::num::{normalised, wide};
 
 const INTERVALS: usize = 512;
 
@@ -102,16 +102,20 @@ pub(crate) fn short(m: u32) -> u32 {
     (looked_up(m) + (1 << 13)) >> 14
 }
 
+/// [`short`] of a divisor's mantissa, and the divisor's leading zeros: 1/d = the former · 2^(zeros − 48).
+#[inline]
+pub(crate) fn short_of(divisor: u32) -> (u32, u32) {
+    let zeros = divisor.leading_zeros();
+    (short(divisor << zeros), zeros)
+}
+
 /// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 and a divisor of 1 … 511, of which each has a place in
 /// the table: relative error below 2⁻²⁰, and rounded to nearest.
 #[inline(never)]
 pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
-    let (mut m, mut down) = ((divisor as u32) << 23, 8);
-    while m as i32 > 0 {
-        (m, down) = (m << 1, down - 1);
-    }
+    let (m, zeros) = normalised((divisor as u32) << 23);
     let reciprocal = (TABLE[(m >> 22) as usize & (INTERVALS - 1)] + (1 << 9)) >> 10;
-    (((numerator * reciprocal as i32) >> (down & 31)) + 1) >> 1
+    (((numerator * reciprocal as i32) >> ((8 - zeros) & 31)) + 1) >> 1
 }
 
 #[cfg(test)]

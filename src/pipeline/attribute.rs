@@ -109,27 +109,35 @@ impl Attribute {
     }
 }
 
+/// 1/n with 31 fraction bits, rounded down.
+static INVERSES: [i32; 32] = {
+    let mut inverses = [i32::MAX; 32];
+    let mut i = 1;
+    while i < 32 {
+        inverses[i] = i32::MAX / i as i32;
+        i += 1;
+    }
+    inverses
+};
+
 /// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
 #[inline]
-pub(super) fn inverse(steps: usize) -> i32 {
-    static TABLE: [i32; 32] = {
-        let mut table = [i32::MAX; 32];
-        let mut i = 1;
-        while i < 32 {
-            table[i] = i32::MAX / i as i32;
-            i += 1;
-        }
-        table
-    };
-    TABLE.get(steps).copied().unwrap_or_else(|| {
+fn inverse(steps: usize) -> i32 {
+    INVERSES.get(steps).copied().unwrap_or_else(|| {
         let reciprocal = Reciprocal::coarse(steps as u32);
         (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
     })
 }
 
+/// 1/`steps` of fewer than 32 with 16 fraction bits, likewise.
+#[inline]
+pub(super) fn short_inverse(steps: i32) -> u32 {
+    INVERSES[steps as usize & 31] as u32 >> 15
+}
+
 /// `rise` in as many steps as [`inverse`] was asked for, cut towards zero.
 #[inline]
-pub(super) fn step_of(rise: i32, inverse: i32) -> i32 {
+fn step_of(rise: i32, inverse: i32) -> i32 {
     let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
     if rise < 0 { -size } else { size }
 }

@@ -4,7 +4,7 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, packed_from, packed_step, shifted};
+use super::fill::{Fill, packed_from, packed_step, shifted, uv_in_units};
 use crate::scene::Texture;
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -201,7 +201,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         let unit_step = [shifted(step[0], a), shifted(step[1], b)];
         let (packed_light_step, none) =
             (C::pack(light_step.map(|step| shifted(step, C::DROPPED))), C::pack([0; M]));
-        let log2 = if a > 6 || b > 6 { 3 } else { C::RUN_LOG2 };
+        let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
             let packed_light = C::pack(light.map(|channel| channel >> C::DROPPED));
             let uv = [[at[0] >> a, at[1] >> b], unit_step, [0; 2]];
@@ -221,18 +221,15 @@ macro_rules! fill_of_lit_texels {
 
             #[inline]
             fn longest(&self) -> i32 {
-                let [a, b] = self.texture.log2();
-                if self.is_packed && (a > 6 || b > 6) { 8 } else { C::LONGEST }
+                if self.is_packed && self.texture.is_large() { 8 } else { C::LONGEST }
             }
 
             #[inline]
             fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
-                match i {
-                    0 | 1 if self.is_packed => {
-                        value >> (self.texture.log2()[i].wrapping_sub(scale_log2) & 31)
-                    }
-                    0 | 1 => value << scale_log2,
-                    _ => value >> C::DROPPED,
+                if i < 2 {
+                    uv_in_units(self.texture, self.is_packed, i, value, scale_log2)
+                } else {
+                    value >> C::DROPPED
                 }
             }
 

@@ -17,7 +17,7 @@
 //! pixels where q changes by 1/12 of itself a pixel (a straight line could be 3 long), every 16 where it is 1/33 (5). Floors
 //! seen level and walls seen straight (q′ ≈ 0) are one straight run with one division.
 
-use super::attribute::Attribute;
+use super::attribute::{Attribute, short_inverse};
 use super::color::Coloring;
 use super::fill::{Each, Fill};
 use super::setup::Cull;
@@ -213,17 +213,6 @@ const fn lengths(falling: bool) -> [u8; 128] {
     lengths
 }
 
-/// 1/n with 16 fraction bits, rounded down; 1 counts as a little less.
-static INVERSES: [u16; 32] = {
-    let mut inverses = [0; 32];
-    let mut n = 1;
-    while n <= LONGEST {
-        inverses[n] = (0xffff / n) as u16;
-        n += 1;
-    }
-    inverses
-};
-
 /// A pixel of a span, and what is linear along the row from there.
 struct Walk<'a, const N: usize> {
     attributes: &'a [Attribute; N],
@@ -376,7 +365,7 @@ impl Span<'_> {
             if length > 0 {
                 left -= length;
                 let bending = -(slope + next_slope);
-                let inverse = u32::from(INVERSES[length as usize & 31]);
+                let inverse = short_inverse(length);
                 let (mut step, mut bend) = ([0; N], [0; N]);
                 for i in 0..N {
                     let rise = next[i].wrapping_sub(at[i]);

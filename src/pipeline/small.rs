@@ -9,7 +9,7 @@ use super::attribute::Attribute;
 use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
-use crate::math::recip::short;
+use crate::math::recip::short_of;
 use crate::num::mul_17;
 
 /// What all planes of a triangle have in common.
@@ -77,10 +77,10 @@ impl TriangleSetup {
             }
             _ => None,
         };
-        let zeros = triangle.area.leading_zeros();
+        let (reciprocal, zeros) = short_of(triangle.area);
         let slopes = Slopes {
             edges,
-            reciprocal: short(triangle.area << zeros),
+            reciprocal,
             zeros,
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),

@@ -11,7 +11,7 @@
 //! corner i, and αᵢ(1 − αᵢ) ≤ ¼. To be pixels it is divided by the change of u over a pixel, which on each edge is at least
 //! |Δuᵢⱼ| / (|Δxᵢⱼ| + |Δyᵢⱼ|), and counts as at least 1 texel or 1/255.
 
-use crate::math::recip::short;
+use crate::math::recip::short_of;
 use crate::num::mul_16;
 
 /// Which triangles are straight in some quality.
@@ -40,8 +40,7 @@ impl Bend {
         if q0 - least >= least >> 2 {
             return None;
         }
-        let zeros = least.leading_zeros();
-        let reciprocal = short(least << zeros);
+        let (reciprocal, zeros) = short_of(least);
         let length = |x: i32, y: i32| x.unsigned_abs() + y.unsigned_abs();
         Some(Self {
             lengths: [

@@ -123,6 +123,12 @@ impl<'a> Texture<'a> {
             && b >= scale_log2
     }
 
+    /// Whether a side has more than 64 texels, so that packed coordinates have less than 10 fraction bits.
+    #[inline]
+    pub(crate) const fn is_large(&self) -> bool {
+        self.log2_width > 6 || self.log2_height > 6
+    }
+
     /// The texel at whole texel coordinates of any size, repeated.
     #[inline]
     pub(crate) fn fetch_repeat(&self, u: i32, v: i32) -> u16 {
