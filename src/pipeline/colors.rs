@@ -33,7 +33,7 @@ pub(crate) struct Gray(i32);
 
 impl Channels<1> for Gray {
     const DROPPED: u32 = 0;
-    const LONGEST: i32 = super::shade::LONGEST as i32;
+    const LONGEST: i32 = super::walk::LONGEST as i32;
     const RUN_LOG2: u32 = 5;
 
     #[inline]

@@ -1,6 +1,6 @@
 //! Fills: runs of pixels along which attributes are linear.
 
-use super::shade::LONGEST;
+use super::walk::LONGEST;
 use crate::scene::Texture;
 use crate::target::PixelFormat;
 use core::marker::PhantomData;

@@ -18,6 +18,7 @@ mod span;
 mod stats;
 mod straight;
 mod transform;
+mod walk;
 
 pub use clip::ScreenVertex;
 pub use color::Coloring;
