@@ -102,13 +102,16 @@ pub use scene::{
     Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,
     TextureError, Textured, Vertex, Wrap, shapes, texels,
 };
-pub use target::{Band, BigEndian, Depth16, DepthFormat, NoDepth, PixelFormat, TargetError};
+pub use target::{
+    Background, Band, BigEndian, Canvas, CapacityError, Changes, Depth16, DepthFormat, DisplayList, Flushed,
+    Gradient, NoDepth, Picture, PixelFormat, TargetError,
+};
 
 /// What most programs use: `use fixel::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        Band, Camera, Cull, Depth16, Light, Lights, Material, Mesh, NoDepth, Pose, Quaternion, Texture, Turn,
-        Vec3, Vertex, Wrap, texels,
+        Band, Camera, Cull, Depth16, DisplayList, Light, Lights, Material, Mesh, NoDepth, Pose, Quaternion,
+        Texture, Turn, Vec3, Vertex, Wrap, texels,
     };
 }
 

@@ -233,6 +233,13 @@ impl Clip {
         true
     }
 
+    /// As [`Clip::place`], the position and q alone.
+    #[inline(never)]
+    pub(super) fn locate(&self, to_clip: &ToClip, vertex: &Vertex, to: &mut ScreenVertex) -> bool {
+        let position = vertex.position.map(|at| i32::from(at.to_bits()));
+        self.project(|axis| to_clip.place(position, axis), &CUT, to)
+    }
+
     /// 1/w, or what is in its place without perspective.
     #[inline(always)]
     fn inverse(&self, w: i32) -> Inverse {

@@ -49,14 +49,7 @@ pub(crate) fn draw<F, D, S>(
         hints: [0; HINTS],
         oldest: 0,
     };
-    let mut raster = Raster {
-        shader,
-        band,
-        window,
-        needs: needs::<F, D, S>(shader, projection.orthographic),
-        setup: TriangleSetup::new(),
-        rows: Rows::default(),
-    };
+    let mut raster = Raster::new(shader, projection.orthographic, window, band);
     let (cull, is_faceted) = (shader.cull(), coloring.is_faceted());
     for indices in mesh.triangles() {
         stats.count(|stats| &mut stats.triangles);
@@ -251,10 +244,7 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    let (setup, rows) = (TriangleSetup::new(), Rows::default());
-    let needs = needs::<F, D, S>(shader, false);
-    let mut raster = Raster { shader, band, window, needs, setup, rows };
-    raster.draw(vertices.each_ref(), cull, &mut ());
+    Raster::new(shader, false, window, band).draw(vertices.each_ref(), cull, &mut ());
     Ok(())
 }
 
@@ -269,7 +259,7 @@ fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, is_orthograph
 }
 
 /// The stages from set-up on.
-struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
+pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
     shader: &'a S,
     band: &'a mut Band<'b, F, D>,
     window: Window,
@@ -278,14 +268,30 @@ struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
     rows: Rows,
 }
 
-impl<F, D, S> Raster<'_, '_, F, D, S>
+impl<'a, 'b, F, D, S> Raster<'a, 'b, F, D, S>
 where
     F: PixelFormat,
     D: DepthFormat,
     S: Shader<F>,
 {
+    pub(crate) fn new(
+        shader: &'a S,
+        is_orthographic: bool,
+        window: Window,
+        band: &'a mut Band<'b, F, D>,
+    ) -> Self {
+        let needs = needs::<F, D, S>(shader, is_orthographic);
+        Self { shader, band, window, needs, setup: TriangleSetup::new(), rows: Rows::default() }
+    }
+
+    /// The same for another shader and window.
+    pub(crate) fn change(&mut self, shader: &'a S, is_orthographic: bool, window: Window) {
+        (self.shader, self.window) = (shader, window);
+        self.needs = needs::<F, D, S>(shader, is_orthographic);
+    }
+
     #[inline]
-    fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
+    pub(crate) fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
         match Oriented::new(vertices, cull) {
             Some(triangle) => self.draw_oriented(&triangle, stats),
             None => stats.count(|stats| &mut stats.culled),

@@ -53,6 +53,25 @@ pub enum Cull {
     None,
 }
 
+impl Cull {
+    /// By twice the area, positive clockwise on the screen.
+    #[inline]
+    fn leaves_out(self, area: i32) -> bool {
+        match self {
+            _ if area == 0 => true,
+            Self::Back => area > 0,
+            Self::Front => area < 0,
+            Self::None => false,
+        }
+    }
+
+    /// Whether a triangle between positions in 1/16 px, within the guard band, is left out.
+    #[inline]
+    pub(super) fn leaves_out_triangle(self, [a, b, c]: [[i32; 2]; 3]) -> bool {
+        self.leaves_out((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    }
+}
+
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(super) const ATTRIBUTES: usize = 5;
 
@@ -158,11 +177,8 @@ impl<'a> Oriented<'a> {
     pub(super) fn new([a, b, c]: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
         let ([ax, ay], [bx, by], [cx, cy]) = (position(a), position(b), position(c));
         let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // positive: clockwise on the screen
-        match cull {
-            _ if area == 0 => return None,
-            Cull::Back if area > 0 => return None,
-            Cull::Front if area < 0 => return None,
-            _ => {}
+        if cull.leaves_out(area) {
+            return None;
         }
         let [a, b, c] = if area < 0 { [a, c, b] } else { [a, b, c] };
         let vertices = if b.q > a.q && b.q >= c.q {

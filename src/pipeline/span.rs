@@ -210,6 +210,14 @@ pub(crate) struct Window {
 }
 
 impl Window {
+    /// Of the largest target.
+    pub(crate) const LARGEST: Self = Self { columns: 0..1023, rows: 0..1023 };
+
+    /// The first pixel centre within an extent of three positions (1/16 px) along an axis, and the one behind the last.
+    pub(super) fn centers(a: i32, b: i32, c: i32) -> [i32; 2] {
+        [first_row(a.min(b).min(c)), first_row(a.max(b).max(c))]
+    }
+
     pub(crate) fn within(self, viewport: &Viewport) -> Self {
         let (left, top) = (i32::from(viewport.left), i32::from(viewport.top));
         let within = |range: Range<i32>, start: i32, length: i16| {

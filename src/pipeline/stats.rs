@@ -26,7 +26,7 @@ pub struct Stats {
 }
 
 /// Where [`draw`](super::draw::draw) counts: in [`Stats`], or nowhere at no cost.
-pub(crate) trait Count {
+pub trait Count {
     fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32);
 }
 

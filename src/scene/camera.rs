@@ -4,8 +4,8 @@ use super::Mesh;
 use super::projection::{Projection, clamped, limited};
 use crate::math::{Pose, Turn, Vec3, normalized};
 use crate::num::{I2F14, I12F4, I16F16, U1F31, bits_from_f32};
-use crate::pipeline::{self, Shader, Stats};
-use crate::target::{Band, DepthFormat, PixelFormat};
+use crate::pipeline::{self, Stats};
+use crate::target::Canvas;
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -233,7 +233,8 @@ impl Camera {
         moved(&self.pose, [offset(x, 0), -offset(y, 1), -i64::from(distance.to_bits())])
     }
 
-    /// Draws a mesh, standing as `pose` says, into a band.
+    /// Draws a mesh, standing as `pose` says: into a band at once, or into a display list, which keeps mesh and shader
+    /// borrowed and may be full.
     ///
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
     /// away are culled as the shader says.
@@ -242,33 +243,34 @@ impl Camera {
     /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
     /// 10³ and at any distance from the world's origin.
     ///
-    /// Whatever the numbers, it draws or leaves out, and never fails: coordinates at the ends of every format, vertices
-    /// that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a near plane at
-    /// 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
+    /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
+    /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a
+    /// near plane at 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
     /// left out is what [`Stats`] counts.
-    pub fn draw<F, D, S>(&self, mesh: &Mesh<'_>, pose: &Pose, shader: &S, band: &mut Band<'_, F, D>)
+    pub fn draw<'a, S, C>(&self, mesh: &Mesh<'a>, pose: &Pose, shader: &'a S, canvas: &mut C) -> C::Output
     where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
+        C: Canvas<'a, S>,
     {
-        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band, &mut ());
+        canvas.draw_mesh(self, mesh, pose, shader, &mut ())
     }
 
     /// As [`Camera::draw`], and counts what became of the mesh.
-    pub fn draw_counted<F, D, S>(
+    pub fn draw_counted<'a, S, C>(
         &self,
-        mesh: &Mesh<'_>,
+        mesh: &Mesh<'a>,
         pose: &Pose,
-        shader: &S,
-        band: &mut Band<'_, F, D>,
+        shader: &'a S,
+        canvas: &mut C,
         stats: &mut Stats,
-    ) where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
+    ) -> C::Output
+    where
+        C: Canvas<'a, S>,
     {
-        pipeline::draw(mesh, &self.projection, &self.pose, pose, shader, band, stats);
+        canvas.draw_mesh(self, mesh, pose, shader, stats)
+    }
+
+    pub(crate) const fn projection(&self) -> &Projection {
+        &self.projection
     }
 }
 

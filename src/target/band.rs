@@ -1,5 +1,6 @@
 //! A band: some rows of the screen, or all of them.
 
+use super::background::Background;
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
 use crate::num::U1F31;
@@ -111,6 +112,46 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         F::Word: bytemuck::NoUninit,
     {
         bytemuck::must_cast_slice(self.pixels)
+    }
+
+    /// The colours of an area of the screen, row after row, as far as it lies in the band.
+    pub fn colors_in(&self, area: &Rectangle) -> impl Iterator<Item = F::Color> {
+        self.rows_in(area).flatten().map(|&word| F::decode(word))
+    }
+
+    /// The rows of an area of the screen, as far as it lies in the band.
+    pub fn rows_in(&self, area: &Rectangle) -> impl Iterator<Item = &[F::Word]> {
+        let (columns, rows) = self.within(area).unwrap_or((0..0, 0..0));
+        rows.map(move |y| {
+            let row = (y - i32::from(self.top)) as usize * usize::from(self.width);
+            self.pixels.get(row + columns.start as usize..row + columns.end as usize).unwrap_or_default()
+        })
+    }
+
+    /// Shows nothing but a background, and forgets all depths.
+    pub fn clear_to(&mut self, background: &impl Background<F>) {
+        if self.width > 0 {
+            for (y, row) in (u32::from(self.top)..).zip(self.pixels.chunks_exact_mut(self.width.into())) {
+                background.fill_row(y, row);
+            }
+        }
+        self.clear_depth();
+    }
+
+    /// The rows from `top` on of a screen of `height` rows, as many as there are here; `None` below the last.
+    pub(super) fn part(&mut self, top: u32, height: u32) -> Option<Band<'_, F, D>> {
+        let rows = height.min(MAX_SIDE).checked_sub(top)?.min(self.height.into());
+        if rows == 0 {
+            return None;
+        }
+        let size = Size::new(self.width.into(), rows);
+        Some(Band::new(size, self.pixels, self.depth).ok()?.starting_at(top))
+    }
+
+    /// The memory, for the next use: the pixels of a static band go to a DMA channel as they came.
+    #[must_use]
+    pub fn into_slices(self) -> (&'a mut [F::Word], &'a mut [D::Word]) {
+        (self.pixels, self.depth)
     }
 
     /// The part of the screen that it holds.

@@ -1,0 +1,443 @@
+//! Stages 1 and 2 for later: meshes become the screen vertices and triangles of a display list.
+
+use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
+use super::color::Coloring;
+use super::setup::Cull;
+use super::shade::{Inputs, Shader};
+use super::span::Window;
+use super::stats::Count;
+use super::transform::ToClip;
+use crate::math::Pose;
+use crate::num::{I12F4, I16F16, U1F31, U8F8};
+use crate::scene::{Mesh, Projection, Vertex};
+use crate::target::PixelFormat;
+use heapless::VecView;
+
+/// A screen vertex in a list.
+///
+/// What is beyond position and q are the attributes that its shader reads: u and v; or a colour; or a colour and the vertex of
+/// the mesh that has u and v. A corner that clipping made, with colour *and* texture, takes the slot behind it too, for u and v.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ListVertex {
+    x: I12F4,
+    y: I12F4,
+    /// U1F31; while a mesh is recorded the top bit is [`KEPT`].
+    q: u32,
+    attributes: [u16; 4],
+}
+
+const _: () = assert!(size_of::<ListVertex>() == 16);
+
+/// A triangle that is drawn has this vertex.
+const KEPT: u32 = 1 << 31;
+/// x of a vertex that has to be cut off.
+const CUT_OFF: I12F4 = I12F4::MIN;
+/// In the place of a mesh's vertex: u and v are in the next slot.
+const IN_NEXT: u16 = u16::MAX;
+/// The most slots, so that no index is [`IN_NEXT`].
+pub(crate) const MOST_SLOTS: usize = IN_NEXT as usize;
+
+/// A triangle in a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ListTriangle {
+    /// Slots.
+    corners: [u16; 3],
+    /// The first and the last row that it touches, in [`ROWS_LOG2`].
+    pub(crate) rows: [u8; 2],
+}
+
+const _: () = assert!(size_of::<ListTriangle>() == 8);
+
+/// The index by rows has steps of 4 rows: 1023 fit a byte.
+pub(crate) const ROWS_LOG2: u32 = 2;
+
+impl ListVertex {
+    fn new(at: &ScreenVertex) -> Self {
+        Self { x: at.x, y: at.y, q: at.q.to_bits().min(i32::MAX as u32), attributes: [0; 4] }
+    }
+
+    fn uv(u: I16F16, v: I16F16) -> [u16; 4] {
+        let [u, v] = [u, v].map(|t| t.to_bits() as u32);
+        [u as u16, (u >> 16) as u16, v as u16, (v >> 16) as u16]
+    }
+
+    fn position(&self) -> [i32; 2] {
+        [self.x, self.y].map(|at| at.to_bits().into())
+    }
+}
+
+/// A list as far as it does not depend on the shader.
+#[derive(Clone, Copy)]
+pub(crate) struct ListView<'l> {
+    pub(crate) vertices: &'l [ListVertex],
+    pub(crate) triangles: &'l [ListTriangle],
+}
+
+impl ListView<'_> {
+    /// A corner for set-up, as it went into the list.
+    #[inline]
+    fn corner(&self, slot: u16, inputs: Inputs, mesh: &[Vertex]) -> ScreenVertex {
+        let Some(at) = self.vertices.get(usize::from(slot)) else {
+            return ScreenVertex::default();
+        };
+        let mut vertex =
+            ScreenVertex { x: at.x, y: at.y, q: U1F31::from_bits(at.q), ..ScreenVertex::default() };
+        let texels = |[u, u_high, v, v_high]: [u16; 4]| {
+            [u32::from(u) | u32::from(u_high) << 16, u32::from(v) | u32::from(v_high) << 16]
+                .map(|bits| I16F16::from_bits(bits as i32))
+        };
+        let [red, green, blue, of_mesh] = at.attributes;
+        if matches!(inputs, Inputs::Color | Inputs::UvColor) {
+            vertex.color = [red, green, blue].map(U8F8::from_bits);
+        }
+        match inputs {
+            Inputs::Uv => [vertex.u, vertex.v] = texels(at.attributes),
+            Inputs::UvColor if of_mesh == IN_NEXT => {
+                if let Some(next) = self.vertices.get(usize::from(slot) + 1) {
+                    [vertex.u, vertex.v] = texels(next.attributes);
+                }
+            }
+            Inputs::UvColor => {
+                if let Some(of_mesh) = mesh.get(usize::from(of_mesh)) {
+                    [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
+                }
+            }
+            Inputs::None | Inputs::Color => {}
+        }
+        vertex
+    }
+
+    /// A triangle's corners.
+    #[inline]
+    pub(crate) fn corners(
+        &self,
+        triangle: &ListTriangle,
+        inputs: Inputs,
+        mesh: &[Vertex],
+    ) -> [ScreenVertex; 3] {
+        triangle.corners.map(|slot| self.corner(slot, inputs, mesh))
+    }
+
+    /// Three times how near a triangle's middle is, in near/w with 29 fraction bits.
+    pub(crate) fn nearness(&self, triangle: &ListTriangle) -> u32 {
+        let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |vertex| vertex.q >> 2);
+        triangle.corners.iter().map(|&slot| q(slot)).sum()
+    }
+
+    /// The columns and rows of the pixel centres within a triangle's bounding box: the first, and the one behind the last.
+    pub(crate) fn bounds(&self, triangle: &ListTriangle) -> [[i32; 2]; 2] {
+        let at = |slot: u16| self.vertices.get(usize::from(slot)).map_or([0; 2], ListVertex::position);
+        let [a, b, c] = triangle.corners.map(at);
+        [0, 1].map(|axis| Window::centers(a[axis], b[axis], c[axis]))
+    }
+}
+
+/// Which capacity is full.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Full {
+    Vertices,
+    Triangles,
+}
+
+/// What a shader wants of the vertices.
+pub(crate) struct Style {
+    cull: Cull,
+    inputs: Inputs,
+    coloring: Coloring,
+}
+
+impl Style {
+    /// Not inlined: what it takes is not on the stack while a mesh is recorded.
+    #[inline(never)]
+    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Self {
+        Self { cull: shader.cull(), inputs: shader.inputs(), coloring: shader.coloring(pose) }
+    }
+
+    fn has_color(&self) -> bool {
+        matches!(self.inputs, Inputs::Color | Inputs::UvColor)
+    }
+}
+
+/// Adds one mesh to a list.
+///
+/// Each vertex of the mesh has its slot at first: that is what makes a vertex transformed once and found at once. At the end
+/// those of no triangle that is drawn are given back, and the others move together.
+struct Recorder<'l, 'm> {
+    vertices: &'l mut VecView<ListVertex>,
+    triangles: &'l mut VecView<ListTriangle>,
+    mesh: &'l Mesh<'m>,
+    to_clip: ToClip,
+    clip: Clip,
+    style: &'l Style,
+    window: Window,
+    /// The slot of the mesh's vertex 0, or what would be it, wrapping.
+    base: u16,
+    /// The mesh's slots.
+    own: core::ops::Range<usize>,
+}
+
+/// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error.
+pub(crate) fn record(
+    vertices: &mut VecView<ListVertex>,
+    triangles: &mut VecView<ListTriangle>,
+    mesh: &Mesh<'_>,
+    [camera, pose]: [&Pose; 2],
+    projection: &Projection,
+    style: &Style,
+    stats: &mut impl Count,
+) -> Result<(), Full> {
+    stats.count(|stats| &mut stats.meshes);
+    let window = Window::LARGEST.within(&projection.viewport);
+    let to_clip = ToClip::new(projection, camera, pose);
+    let clip = Clip::new(projection, to_clip.unit_bits());
+    if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
+        stats.count(|stats| &mut stats.meshes_out_of_sight);
+        return Ok(());
+    }
+    // Of a part of a mesh, no more than it names.
+    let (first, last) = mesh
+        .triangles()
+        .flatten()
+        .fold((u16::MAX, 0), |(first, last), index| (first.min(index), last.max(index)));
+    if first > last {
+        return Ok(());
+    }
+    let (start, count) = (vertices.len(), usize::from(last - first) + 1);
+    if start + count > vertices.capacity().min(MOST_SLOTS) {
+        return Err(Full::Vertices);
+    }
+    let base = (start as u16).wrapping_sub(first);
+    let own = start..start + count;
+    let first_triangle = triangles.len();
+    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, base, own };
+    recorder.place(first..=last, stats);
+    recorder.add_triangles(stats)?;
+    recorder.move_together(first, first_triangle);
+    Ok(())
+}
+
+impl Recorder<'_, '_> {
+    fn place(&mut self, indices: core::ops::RangeInclusive<u16>, stats: &mut impl Count) {
+        let mut at = ScreenVertex::default();
+        for index in indices {
+            stats.count(|stats| &mut stats.transformed);
+            let seen = self.clip.locate(&self.to_clip, self.mesh.vertex(index), &mut at);
+            let vertex = ListVertex::new(&at);
+            // There is room.
+            let _ = self.vertices.push(if seen { vertex } else { ListVertex { x: CUT_OFF, ..vertex } });
+        }
+    }
+
+    fn slot(&self, index: u16) -> u16 {
+        self.base.wrapping_add(index)
+    }
+
+    fn at(&self, slot: u16) -> [i32; 2] {
+        self.vertices.get(usize::from(slot)).map_or([0; 2], ListVertex::position)
+    }
+
+    #[inline(never)]
+    fn add_triangles(&mut self, stats: &mut impl Count) -> Result<(), Full> {
+        let is_faceted = self.style.coloring.is_faceted();
+        let mesh = self.mesh;
+        for indices in mesh.triangles() {
+            stats.count(|stats| &mut stats.triangles);
+            let corners = indices.map(|index| self.slot(index));
+            let [a, b, c] = corners.map(|slot| self.at(slot));
+            let cut_off = i32::from(CUT_OFF.to_bits());
+            if a[0] == cut_off || b[0] == cut_off || c[0] == cut_off {
+                self.add_cut(indices, stats)?;
+                continue;
+            }
+            let Some(rows) = self.rows_if_seen([a, b, c], stats) else {
+                continue;
+            };
+            if is_faceted {
+                self.add_faceted(indices, rows)?;
+            } else {
+                for index in indices {
+                    self.keep(index);
+                }
+                self.add(corners, rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of a triangle if it is neither culled nor out of the viewport, in steps of the index.
+    #[inline]
+    fn rows_if_seen(&self, [a, b, c]: [[i32; 2]; 3], stats: &mut impl Count) -> Option<[u8; 2]> {
+        if self.style.cull.leaves_out_triangle([a, b, c]) {
+            stats.count(|stats| &mut stats.culled);
+            return None;
+        }
+        let within = |axis: usize, range: &core::ops::Range<i32>| {
+            let [start, end] = Window::centers(a[axis], b[axis], c[axis]);
+            (start.max(range.start), end.min(range.end))
+        };
+        let (left, right) = within(0, &self.window.columns);
+        let (top, bottom) = within(1, &self.window.rows);
+        if left >= right || top >= bottom {
+            stats.count(|stats| &mut stats.out_of_sight);
+            return None;
+        }
+        stats.count(|stats| &mut stats.drawn);
+        Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
+    }
+
+    fn add(&mut self, corners: [u16; 3], rows: [u8; 2]) -> Result<(), Full> {
+        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
+    }
+
+    /// A vertex is lit when it turns out that it is seen.
+    #[inline]
+    fn keep(&mut self, index: u16) {
+        let slot = usize::from(self.slot(index));
+        let Some(vertex) = self.vertices.get_mut(slot) else {
+            return;
+        };
+        if vertex.q & KEPT != 0 {
+            return;
+        }
+        vertex.q |= KEPT;
+        if self.style.has_color() {
+            let mut color = [U8F8::ZERO; 3];
+            self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
+            let [red, green, blue] = color.map(U8F8::to_bits);
+            vertex.attributes = [red, green, blue, 0];
+        }
+    }
+
+    /// With the light of its face: corners of its own.
+    #[inline(never)]
+    fn add_faceted(&mut self, indices: [u16; 3], rows: [u8; 2]) -> Result<(), Full> {
+        let mut corners = [0; 3];
+        for (corner, index) in corners.iter_mut().zip(indices) {
+            let slot = self.slot(index);
+            let of_mesh = self.mesh.vertex(index);
+            let mut vertex = ScreenVertex::default();
+            if let Some(at) = self.vertices.get(usize::from(slot)) {
+                (vertex.x, vertex.y, vertex.q) = (at.x, at.y, U1F31::from_bits(at.q));
+            }
+            [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
+            self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
+            self.light_face(&mut vertex, indices);
+            *corner = self.push(&vertex)?;
+        }
+        self.add(corners, rows)
+    }
+
+    fn light_face(&self, vertex: &mut ScreenVertex, indices: [u16; 3]) {
+        if self.style.coloring.is_faceted() {
+            let corners = indices.map(|index| self.mesh.vertex(index));
+            vertex.color = self.style.coloring.on_triangle(vertex.color, corners);
+        }
+    }
+
+    /// The pieces of a triangle that has to be cut, as a fan.
+    #[cold]
+    #[inline(never)]
+    fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) -> Result<(), Full> {
+        stats.count(|stats| &mut stats.clipped);
+        let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
+        let corners = indices.map(|index| self.mesh.vertex(index));
+        let Some(count) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon) else {
+            stats.count(|stats| &mut stats.rejected);
+            return Ok(());
+        };
+        let mut slots = [None; MOST_CORNERS];
+        for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
+            let fan = [0, piece, piece + 1];
+            let position = |i: usize| [polygon[i].x, polygon[i].y].map(|at| i32::from(at.to_bits()));
+            let Some(rows) = self.rows_if_seen(fan.map(position), stats) else {
+                continue;
+            };
+            let mut corners = [0; 3];
+            for (corner, i) in corners.iter_mut().zip(fan) {
+                *corner = match slots[i] {
+                    Some(slot) => slot,
+                    None => {
+                        self.light_face(&mut polygon[i], indices);
+                        self.push(&polygon[i])?
+                    }
+                };
+                slots[i] = Some(*corner);
+            }
+            self.add(corners, rows)?;
+        }
+        Ok(())
+    }
+
+    /// A corner that no vertex of the mesh stands for.
+    fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
+        let slot = self.vertices.len();
+        let uv = ListVertex::uv(at.u, at.v);
+        let [red, green, blue] = at.color.map(U8F8::to_bits);
+        let vertex = ListVertex::new(at);
+        match self.style.inputs {
+            Inputs::Uv => self.push_slot(ListVertex { attributes: uv, ..vertex })?,
+            inputs => self.push_slot(ListVertex {
+                attributes: [red, green, blue, if inputs == Inputs::UvColor { IN_NEXT } else { 0 }],
+                ..vertex
+            })?,
+        }
+        if self.style.inputs == Inputs::UvColor {
+            self.push_slot(ListVertex { attributes: uv, ..ListVertex::default() })?;
+        }
+        Ok(slot as u16)
+    }
+
+    fn push_slot(&mut self, slot: ListVertex) -> Result<(), Full> {
+        if self.vertices.len() >= MOST_SLOTS {
+            return Err(Full::Vertices);
+        }
+        self.vertices.push(slot).map_err(|_| Full::Vertices)
+    }
+
+    /// Gives back the slots of vertices that are not seen, and completes the others.
+    #[inline(never)]
+    fn move_together(self, first: u16, first_triangle: usize) {
+        let Self { vertices, triangles, mesh, style, own, .. } = self;
+        // Where each goes: into the place of the mesh's vertex, which is known as long as it stays.
+        let mut next = own.start as u16;
+        for vertex in vertices.get_mut(own.clone()).unwrap_or_default() {
+            if vertex.q & KEPT != 0 {
+                vertex.attributes[3] = next;
+                next += 1;
+            }
+        }
+        let freed = own.end as u16 - next;
+        for triangle in triangles.get_mut(first_triangle..).unwrap_or_default() {
+            for corner in &mut triangle.corners {
+                *corner = match vertices.get(usize::from(*corner)) {
+                    Some(vertex) if usize::from(*corner) < own.end => vertex.attributes[3],
+                    _ => *corner - freed,
+                };
+            }
+        }
+        let mut to = own.start;
+        for from in own.start..vertices.len() {
+            let Some(&(mut vertex)) = vertices.get(from) else {
+                return;
+            };
+            if from < own.end {
+                if vertex.q & KEPT == 0 {
+                    continue;
+                }
+                vertex.q &= !KEPT;
+                let index = first + (from - own.start) as u16;
+                if style.inputs == Inputs::Uv {
+                    let [u, v] = mesh.vertex(index).uv;
+                    vertex.attributes = ListVertex::uv(u.into(), v.into());
+                } else {
+                    vertex.attributes[3] = index;
+                }
+            }
+            if let Some(place) = vertices.get_mut(to) {
+                *place = vertex;
+            }
+            to += 1;
+        }
+        vertices.truncate(to);
+    }
+}

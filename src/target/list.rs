@@ -1,0 +1,386 @@
+//! A frame for later: what cameras drew, transformed, clipped, culled and lit, to be rendered band by band.
+
+use super::canvas::{Canvas, sealed::Sealed};
+use super::{Background, Band, DepthFormat, PixelFormat};
+use crate::math::Pose;
+use crate::pipeline::{
+    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, ROWS_LOG2, Raster, Shader,
+    Style, Window, record,
+};
+use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
+use core::fmt;
+use core::marker::PhantomData;
+use embedded_graphics::geometry::Dimensions;
+use embedded_graphics::pixelcolor::Rgb565;
+use embedded_graphics::primitives::Rectangle;
+use heapless::Vec;
+
+/// A scene bigger than RAM: what [`Camera::draw`] drew, kept as at most `V` vertices, `T` triangles and `D` draws, to be
+/// rendered into bands of a few rows, each with its own depth.
+///
+/// A vertex takes 16 bytes and a triangle 10. Of a mesh only the vertices of triangles that are seen stay in the list, but while
+/// it is drawn there has to be room for all that it names. (A corner that clipping makes takes a vertex, and two if it has both
+/// colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are culled or out of the viewport
+/// take nothing. Draws of one mesh and one shader in a row count as one.
+///
+/// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame. Rendering takes `&self`:
+/// two cores can render two bands.
+///
+/// `S` is the shader and `F` the pixel format; both are inferred from use.
+///
+/// ```
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::prelude::*;
+/// # fn main() -> Result<(), fixel::CapacityError> {
+/// # const TRIANGLE: Mesh = Mesh::new(
+/// #     &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+/// #     &[[0, 1, 2]],
+/// # );
+/// # let mut display = Vec::new();
+/// let screen = Size::new(240, 320);
+/// let camera = Camera::perspective(Turn::from_degrees(60), screen).at(Vec3::lit(0.0, 0.0, 2.5));
+/// let material = Material::gouraud();
+/// let mut list = DisplayList::<8, 4, 1>::new(); // vertices, triangles, draws
+/// camera.draw(&TRIANGLE, &Pose::IDENTITY, &material, &mut list)?;
+///
+/// let (mut pixels, mut depth) = ([0; 240 * 16], [0; 240 * 16]);
+/// let mut band = Band::<Rgb565, Depth16>::new(Size::new(240, 16), &mut pixels, &mut depth).unwrap();
+/// let Ok(()) = list.render_bands(screen.height, &Rgb565::BLUE, &mut band, |area, band| {
+///     // 2D on top, then to the display: display.fill_contiguous(&area, band.colors())
+/// #   display.extend(band.colors());
+/// #   Ok::<_, core::convert::Infallible>(())
+/// });
+/// # assert_eq!(display.len(), 240 * 320);
+/// # Ok(())
+/// # }
+/// ```
+pub struct DisplayList<
+    'a,
+    const V: usize,
+    const T: usize,
+    const D: usize,
+    S = Material<'a>,
+    F: PixelFormat = Rgb565,
+> {
+    vertices: Vec<ListVertex, V>,
+    triangles: Vec<ListTriangle, T>,
+    /// Triangles in the order in which they are drawn.
+    order: Vec<u16, T>,
+    draws: Vec<Draw<'a, S>, D>,
+    format: PhantomData<fn() -> F>,
+}
+
+/// What triangles have in common.
+struct Draw<'a, S> {
+    shader: &'a S,
+    /// The mesh's.
+    vertices: &'a [Vertex],
+    viewport: Viewport,
+    /// The triangle behind the last.
+    end: u16,
+    inputs: Inputs,
+    is_orthographic: bool,
+}
+
+impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> DisplayList<'a, V, T, D, S, F> {
+    /// An empty list. Nothing but its lengths is written.
+    #[must_use]
+    pub const fn new() -> Self {
+        const { assert!(V <= MOST_SLOTS && T <= MOST_SLOTS, "a list has at most 65535 vertices and triangles") };
+        Self {
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            order: Vec::new(),
+            draws: Vec::new(),
+            format: PhantomData,
+        }
+    }
+
+    /// The bytes that a list of these capacities takes.
+    #[must_use]
+    pub const fn bytes() -> usize {
+        size_of::<Self>()
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.vertices.clear();
+        self.triangles.clear();
+        self.order.clear();
+        self.draws.clear();
+    }
+
+    /// How many vertices, triangles and draws it holds.
+    #[must_use]
+    pub fn lengths(&self) -> [usize; 3] {
+        [self.vertices.len(), self.triangles.len(), self.draws.len()]
+    }
+
+    /// Changes the order from that of drawing to back to front, by the distance of triangles' middles, and as drawn where it is
+    /// the same: for bands with [`NoDepth`](super::NoDepth). Call it after the last draw.
+    ///
+    /// Where triangles cut through each other, or long ones overlap in a circle, no order is right: that takes depth.
+    pub fn sort_back_to_front(&mut self) {
+        let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
+        let key =
+            |id: u16| (self.triangles.get(usize::from(id)).map_or(0, |triangle| view.nearness(triangle)), id);
+        self.order.sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
+    }
+
+    /// Draws rows `top` … `top` + height − 1 of the screen into a band, which becomes the band of these rows. What it holds it
+    /// keeps, as with [`Camera::draw`]: clear it first, see [`Band::clear_to`].
+    pub fn render<Z: DepthFormat>(&self, top: u32, band: &mut Band<'_, F, Z>)
+    where
+        S: Shader<F>,
+    {
+        band.move_to(top);
+        let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
+        render(&view, &self.order, &self.draws, band);
+    }
+
+    /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
+    /// to `flush`, with its area. In the last there may be fewer rows.
+    ///
+    /// # Errors
+    ///
+    /// The first of `flush`; the rest is not drawn then.
+    pub fn render_bands<Z: DepthFormat, E>(
+        &self,
+        height: u32,
+        background: &impl Background<F>,
+        band: &mut Band<'_, F, Z>,
+        mut flush: impl FnMut(Rectangle, &mut Band<'_, F, Z>) -> Result<(), E>,
+    ) -> Result<(), E>
+    where
+        S: Shader<F>,
+    {
+        let mut top = 0;
+        while let Some(mut part) = band.part(top, height) {
+            part.clear_to(background);
+            self.render(top, &mut part);
+            flush(part.bounding_box(), &mut part)?;
+            top += part.size().height;
+        }
+        Ok(())
+    }
+
+    /// The bounding box of what the list draws of some rows and columns: the columns, and the rows, both with the one behind the
+    /// last.
+    pub(super) fn extent(&self, window: &Window) -> Option<[[i32; 2]; 2]> {
+        let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
+        let steps = index_of(window);
+        let mut all: Option<[[i32; 2]; 2]> = None;
+        let mut first = 0;
+        for draw in &self.draws {
+            let window = window.clone().within(&draw.viewport);
+            let end = usize::from(draw.end);
+            for triangle in self.triangles.get(first..end).unwrap_or_default() {
+                if triangle.rows[0] > steps[1] || triangle.rows[1] < steps[0] {
+                    continue;
+                }
+                let [[left, right], [top, bottom]] = view.bounds(triangle);
+                let (left, right) = (left.max(window.columns.start), right.min(window.columns.end));
+                let (top, bottom) = (top.max(window.rows.start), bottom.min(window.rows.end));
+                if left < right && top < bottom {
+                    let [columns, rows] = all.unwrap_or([[left, right], [top, bottom]]);
+                    all = Some([
+                        [columns[0].min(left), columns[1].max(right)],
+                        [rows[0].min(top), rows[1].max(bottom)],
+                    ]);
+                }
+            }
+            first = end;
+        }
+        all
+    }
+
+    fn record(
+        &mut self,
+        camera: &Camera,
+        mesh: &Mesh<'a>,
+        pose: &Pose,
+        shader: &'a S,
+        stats: &mut impl Count,
+    ) -> Result<(), CapacityError>
+    where
+        S: Shader<F>,
+    {
+        let style = Style::new::<F, S>(shader, pose);
+        let [vertices, triangles, draws] = self.lengths();
+        let recorded = record(
+            &mut self.vertices,
+            &mut self.triangles,
+            mesh,
+            [camera.placement(), pose],
+            camera.projection(),
+            &style,
+            stats,
+        );
+        let draw = Draw {
+            shader,
+            vertices: mesh.vertices(),
+            viewport: camera.projection().viewport,
+            end: self.triangles.len() as u16,
+            inputs: shader.inputs(),
+            is_orthographic: camera.is_orthographic(),
+        };
+        let result = match recorded {
+            Ok(()) if self.triangles.len() == triangles => Ok(()),
+            Ok(()) => match self.draws.last_mut() {
+                Some(last) if last.is_like(&draw) => {
+                    last.end = draw.end;
+                    Ok(())
+                }
+                _ => self.draws.push(draw).map_err(|_| CapacityError::Draws { capacity: D }),
+            },
+            Err(Full::Vertices) => Err(CapacityError::Vertices { capacity: V }),
+            Err(Full::Triangles) => Err(CapacityError::Triangles { capacity: T }),
+        };
+        if result.is_err() {
+            self.vertices.truncate(vertices);
+            self.triangles.truncate(triangles);
+            self.draws.truncate(draws);
+            return result;
+        }
+        for id in triangles..self.triangles.len() {
+            // There is room: as much as for triangles.
+            let _ = self.order.push(id as u16);
+        }
+        Ok(())
+    }
+}
+
+impl<S> Draw<'_, S> {
+    /// Whether another draw's triangles may count as this one's.
+    fn is_like(&self, other: &Self) -> bool {
+        core::ptr::eq(self.shader, other.shader)
+            && core::ptr::eq(self.vertices, other.vertices)
+            && self.viewport == other.viewport
+            && self.inputs == other.inputs
+            && self.is_orthographic == other.is_orthographic
+    }
+}
+
+/// A window's rows in steps of the index: the first and the last. Of an empty window nonsense.
+fn index_of(window: &Window) -> [u8; 2] {
+    [window.rows.start, window.rows.end - 1].map(|row| (row.clamp(0, 1023) >> ROWS_LOG2) as u8)
+}
+
+/// Compiled once for all capacities.
+fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
+    view: &ListView<'_>,
+    order: &[u16],
+    draws: &[Draw<'_, S>],
+    band: &mut Band<'_, F, Z>,
+) {
+    let window = band.window();
+    let Some(mut draw) = draws.first() else {
+        return;
+    };
+    if window.is_empty() {
+        return;
+    }
+    let [first, last] = index_of(&window);
+    let mut ids = 0..draw.end;
+    let mut raster =
+        Raster::new(draw.shader, draw.is_orthographic, window.clone().within(&draw.viewport), band);
+    for &id in order {
+        let Some(triangle) = view.triangles.get(usize::from(id)) else {
+            return;
+        };
+        if triangle.rows[0] > last || triangle.rows[1] < first {
+            continue;
+        }
+        if !ids.contains(&id) {
+            let number = draws.partition_point(|draw| draw.end <= id);
+            let before = number.checked_sub(1).and_then(|before| draws.get(before));
+            let Some(other) = draws.get(number) else {
+                return;
+            };
+            draw = other;
+            ids = before.map_or(0, |before| before.end)..draw.end;
+            raster.change(draw.shader, draw.is_orthographic, window.clone().within(&draw.viewport));
+        }
+        let corners = view.corners(triangle, draw.inputs, draw.vertices);
+        raster.draw(corners.each_ref(), Cull::None, &mut ());
+    }
+}
+
+impl<'a, const V: usize, const T: usize, const D: usize, S, F> Canvas<'a, S>
+    for DisplayList<'a, V, T, D, S, F>
+where
+    S: Shader<F>,
+    F: PixelFormat,
+{
+    type Output = Result<(), CapacityError>;
+
+    fn draw_mesh(
+        &mut self,
+        camera: &Camera,
+        mesh: &Mesh<'a>,
+        pose: &Pose,
+        shader: &'a S,
+        stats: &mut impl Count,
+    ) -> Result<(), CapacityError> {
+        self.record(camera, mesh, pose, shader, stats)
+    }
+}
+
+impl<const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Sealed
+    for DisplayList<'_, V, T, D, S, F>
+{
+}
+
+impl<const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Default
+    for DisplayList<'_, V, T, D, S, F>
+{
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const V: usize, const T: usize, const D: usize, S, F: PixelFormat> fmt::Debug
+    for DisplayList<'_, V, T, D, S, F>
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [vertices, triangles, draws] = self.lengths();
+        f.debug_struct("DisplayList")
+            .field("vertices", &vertices)
+            .field("triangles", &triangles)
+            .field("draws", &draws)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A display list is full; it is as it was before the draw that did not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CapacityError {
+    /// Of vertices, `V`: of those that stay, and all of the mesh that is drawn.
+    Vertices {
+        /// How many there can be.
+        capacity: usize,
+    },
+    /// Of triangles, `T`.
+    Triangles {
+        /// How many there can be.
+        capacity: usize,
+    },
+    /// Of draws, `D`.
+    Draws {
+        /// How many there can be.
+        capacity: usize,
+    },
+}
+
+impl fmt::Display for CapacityError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (capacity, what) = match self {
+            Self::Vertices { capacity } => (capacity, "vertices"),
+            Self::Triangles { capacity } => (capacity, "triangles"),
+            Self::Draws { capacity } => (capacity, "draws"),
+        };
+        write!(f, "the display list has no room for more than {capacity} {what}")
+    }
+}
+
+impl core::error::Error for CapacityError {}
