@@ -9,7 +9,8 @@ use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I12F4, I16F16, U10F22};
 use fixel::{
-    Band, Camera, Cull, Depth16, Light, Lights, Material, Mesh, Pose, Stats, Texture, Turn, Vec3, Vertex,
+    Band, Camera, Cull, Depth16, DisplayList, Light, Lights, Material, Mesh, Pose, Stats, Texture, Turn,
+    Vec3, Vertex,
 };
 
 const CORNERS: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.5], [-1.0, 1.0, -0.5]];
@@ -164,6 +165,16 @@ fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
                         let touched =
                             pixels.iter().zip(&depth).any(|(word, depth)| *depth == 0 && *word != 0x1234);
                         assert!(!touched, "a pixel without depth: {}", about());
+                        // Kept for later it is the same.
+                        let mut list = DisplayList::<64, 32, 1>::new();
+                        let kept = camera.draw(&mesh, pose, material, &mut list);
+                        assert_eq!(kept, Ok(()), "{}", about());
+                        let (mut listed, mut listed_depth) = (vec![0x1234; words], vec![0; words]);
+                        let mut band = Band::<Rgb565, Depth16>::new(size, &mut listed, &mut listed_depth)
+                            .expect("the slices are long enough");
+                        list.render(row, &mut band);
+                        assert!(listed == pixels[..words], "a list: {}", about());
+                        assert!(listed_depth == depth[..words], "a list: {}", about());
                         drawn += 1;
                         seen += u32::from(depth.iter().any(|depth| *depth > 0));
                     }

@@ -124,7 +124,7 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
         let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
         let key =
             |id: u16| (self.triangles.get(usize::from(id)).map_or(0, |triangle| view.nearness(triangle)), id);
-        self.order.sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
+        self.order.sort_unstable_by_key(|&id| key(id));
     }
 
     /// Draws rows `top` … `top` + height − 1 of the screen into a band, which becomes the band of these rows. What it holds it

@@ -7,6 +7,7 @@
 
 pub(crate) mod generate;
 pub(crate) mod perspective;
+pub(crate) mod scenes;
 pub(crate) mod view;
 
 use std::fmt::Debug;

@@ -1,0 +1,487 @@
+//! The promise: a display list rendered in bands of any height, by one core or two, shows the bytes of a whole frame that is
+//! drawn at once; only what changed is sent, and nothing is missed; a full list says so and is as it was.
+
+mod common;
+mod reference;
+
+use std::cell::Cell;
+use std::convert::Infallible;
+use std::fmt::Debug;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::thread;
+
+use common::for_all;
+use common::scenes::{Draw, MATERIALS, TEXELS, draw, materials, scene};
+use fixel::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_4X6};
+use fixel::embedded_graphics::pixelcolor::{Rgb565, Rgb888};
+use fixel::embedded_graphics::prelude::*;
+use fixel::embedded_graphics::primitives::Rectangle;
+use fixel::embedded_graphics::text::Text;
+use fixel::{
+    Affine, Background, Band, BigEndian, CapacityError, Changes, Depth16, DepthFormat, DisplayList, Exact,
+    Flushed, Gradient, Material, NoDepth, Picture, PixelFormat, Quality, QuarterPixel, Texture,
+};
+use proptest::prelude::*;
+
+/// A list that holds every scene here.
+type Large<Q, F = Rgb565> = DisplayList<'static, 2000, 1000, 16, Material<'static, Q>, F>;
+
+fn leaked<Q: Quality + 'static>() -> &'static [Material<'static, Q>; MATERIALS] {
+    Box::leak(Box::new(materials()))
+}
+
+fn listed<Q: Quality, F: PixelFormat>(
+    screen: Size,
+    draws: &[Draw],
+    materials: &'static [Material<'static, Q>; MATERIALS],
+) -> Large<Q, F> {
+    let mut list = Large::new();
+    for draw in draws {
+        draw.add(screen, materials, &mut list).expect("the list is large");
+    }
+    list
+}
+
+/// Pixels and depths of the whole screen, drawn at once.
+fn at_once<Q: Quality, F, D>(
+    screen: Size,
+    draws: &[Draw],
+    materials: &[Material<'static, Q>],
+    background: &impl Background<F>,
+) -> (Vec<F::Word>, Vec<D::Word>)
+where
+    F: PixelFormat<Word: Default>,
+    D: DepthFormat,
+{
+    let words = (screen.width * screen.height) as usize;
+    let (mut pixels, mut depth) = (vec![F::Word::default(); words], vec![D::CLEAR; words]);
+    let mut band = Band::<F, D>::new(screen, &mut pixels, &mut depth).expect("the screen is small");
+    band.clear_to(background);
+    for draw in draws {
+        let mesh = &common::scenes::meshes()[draw.mesh];
+        draw.camera(screen).draw(mesh, &draw.pose, &materials[draw.material], &mut band);
+    }
+    (pixels, depth)
+}
+
+/// Pixels and depths of the whole screen, band by band.
+fn in_bands<Q: Quality, F, D>(
+    screen: Size,
+    rows: u32,
+    list: &Large<Q, F>,
+    background: &impl Background<F>,
+) -> (Vec<F::Word>, Vec<D::Word>)
+where
+    F: PixelFormat<Word: Default>,
+    D: DepthFormat,
+{
+    let words = (screen.width * rows) as usize;
+    let (mut pixels, mut depth) = (vec![F::Word::default(); words], vec![D::CLEAR; words]);
+    let mut band =
+        Band::<F, D>::new(Size::new(screen.width, rows), &mut pixels, &mut depth).expect("the band is small");
+    let (mut all, mut all_depth, mut next) = (Vec::new(), Vec::new(), 0);
+    let Ok(()) = list.render_bands(screen.height, background, &mut band, |area, band| {
+        assert_eq!(area, Rectangle::new(Point::new(0, next), Size::new(screen.width, band.size().height)));
+        next += area.size.height as i32;
+        all.extend_from_slice(band.pixels());
+        all_depth.extend_from_slice(band.depth());
+        Ok::<_, Infallible>(())
+    });
+    (all, all_depth)
+}
+
+const SKY: Rgb565 = Rgb565::new(3, 20, 9);
+
+fn screen() -> impl Strategy<Value = Size> {
+    (1..70_u32, 1..60_u32).prop_map(|(width, height)| Size::new(width, height))
+}
+
+fn same_bytes_at_every_height<Q: Quality + 'static, F, D>(name: &str, usual: u32)
+where
+    F: PixelFormat<Word: Default + PartialEq + Debug>,
+    D: DepthFormat<Word: PartialEq + Debug>,
+    Rgb565: Background<F>,
+{
+    let materials = leaked::<Q>();
+    let drawn = Cell::new(0_u64);
+    for_all(name, usual, (screen(), scene(6), 1..70_u32), |(screen, draws, any)| {
+        let whole = at_once::<Q, F, D>(screen, &draws, materials, &SKY);
+        let list = listed::<Q, F>(screen, &draws, materials);
+        for rows in [1, 2, 7, 16, any, screen.height] {
+            prop_assert_eq!(&in_bands::<Q, F, D>(screen, rows, &list, &SKY), &whole, "{} rows", rows);
+        }
+        drawn.set(drawn.get() + list.lengths()[1] as u64);
+        Ok(())
+    });
+    println!("{name}: {} triangles", drawn.get());
+    assert!(drawn.get() > u64::from(usual), "the scenes are empty");
+}
+
+#[test]
+fn every_height_shows_the_bytes_of_a_whole_frame() {
+    same_bytes_at_every_height::<QuarterPixel, Rgb565, Depth16>("heights", 400);
+    same_bytes_at_every_height::<Exact, BigEndian<Rgb565>, Depth16>("heights, Exact, big-endian", 100);
+    same_bytes_at_every_height::<Affine, Rgb565, Depth16>("heights, Affine", 100);
+    same_bytes_at_every_height::<QuarterPixel, Rgb565, NoDepth>("heights, no depth", 100);
+}
+
+#[test]
+fn two_threads_show_the_same_picture() {
+    let materials = leaked::<QuarterPixel>();
+    let cases = (screen(), scene(6), prop::sample::select(vec![1_u32, 2, 7, 16, 60]));
+    for_all("two threads", 150, cases, |(screen, draws, rows)| {
+        let whole = at_once::<_, Rgb565, Depth16>(screen, &draws, materials, &SKY).0;
+        let list = listed::<_, Rgb565>(screen, &draws, materials);
+        // Whoever is done takes the next band: the split is as random as the machine's scheduler.
+        let next = AtomicU32::new(0);
+        let render = || {
+            let words = (screen.width * rows) as usize;
+            let (mut pixels, mut depth) = (vec![0; words], vec![0; words]);
+            let mut done = Vec::new();
+            loop {
+                let top = next.fetch_add(rows, Ordering::Relaxed);
+                if top >= screen.height {
+                    return done;
+                }
+                let size = Size::new(screen.width, rows.min(screen.height - top));
+                let mut band = Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth)
+                    .expect("the band is small")
+                    .starting_at(top);
+                band.clear_to(&SKY);
+                list.render(top, &mut band);
+                done.push((top, band.pixels().to_vec()));
+            }
+        };
+        let mut bands = thread::scope(|scope| {
+            let other = scope.spawn(render);
+            let mut bands = render();
+            bands.extend(other.join().expect("no panic"));
+            bands
+        });
+        bands.sort_unstable();
+        let picture: Vec<u16> = bands.into_iter().flat_map(|(_, pixels)| pixels).collect();
+        prop_assert_eq!(picture, whole);
+        Ok(())
+    });
+}
+
+/// What `Stats` counts of a mesh in a list and in a frame is the same.
+#[test]
+fn a_list_counts_what_a_frame_counts() {
+    let materials = leaked::<QuarterPixel>();
+    for_all("counts", 300, draw(), |draw| {
+        let screen = Size::new(64, 48);
+        let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
+        let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("it fits");
+        let mut list = Large::<_, Rgb565>::new();
+        let [mut in_frame, mut in_list] = [fixel::Stats::default(); 2];
+        let (camera, mesh) = (draw.camera(screen), &common::scenes::meshes()[draw.mesh]);
+        let material = &materials[draw.material];
+        camera.draw_counted(mesh, &draw.pose, material, &mut band, &mut in_frame);
+        camera.draw_counted(mesh, &draw.pose, material, &mut list, &mut in_list).expect("it fits");
+        // Vertices are transformed once; and a triangle that lies between pixel centres is left out sooner.
+        prop_assert!(in_list.transformed <= in_frame.transformed.max(mesh.vertices().len() as u32));
+        prop_assert_eq!(in_list.drawn + in_list.out_of_sight, in_frame.drawn + in_frame.out_of_sight);
+        prop_assert_eq!(in_list.drawn as usize, list.lengths()[1]);
+        let alike = |stats: fixel::Stats| fixel::Stats { transformed: 0, drawn: 0, out_of_sight: 0, ..stats };
+        prop_assert_eq!(alike(in_list), alike(in_frame));
+        Ok(())
+    });
+}
+
+/// Draws a scene into a list that is too small for some of it: what did not fit is an error, and the list is the one
+/// that would have been without it.
+fn full<const V: usize, const T: usize, const D: usize>(
+    screen: Size,
+    draws: &[Draw],
+    materials: &'static [Material<'static>; MATERIALS],
+    met: &Cell<[u32; 4]>,
+) -> Result<(), TestCaseError> {
+    type Small<const V: usize, const T: usize, const D: usize> =
+        DisplayList<'static, V, T, D, Material<'static>, Rgb565>;
+    let mut list = Small::<V, T, D>::new();
+    let mut fitted = Vec::new();
+    for draw in draws {
+        let before = list.lengths();
+        let result = draw.add(screen, materials, &mut list);
+        let mut counts = met.get();
+        match result {
+            Ok(()) => {
+                counts[0] += 1;
+                fitted.push(*draw);
+            }
+            Err(error) => {
+                prop_assert_eq!(list.lengths(), before);
+                // It is told truly: with more of just that capacity the list goes further.
+                let (kind, capacity) = match error {
+                    CapacityError::Vertices { capacity } => (1, capacity),
+                    CapacityError::Triangles { capacity } => (2, capacity),
+                    CapacityError::Draws { capacity } => (3, capacity),
+                };
+                prop_assert_eq!(capacity, [0, V, T, D][kind]);
+                counts[kind] += 1;
+            }
+        }
+        met.set(counts);
+    }
+    let picture = |list: &Small<V, T, D>| {
+        let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
+        let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("it fits");
+        band.clear_to(&SKY);
+        list.render(0, &mut band);
+        pixels
+    };
+    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, Depth16>(screen, &fitted, materials, &SKY).0);
+    // And it can be used again.
+    list.clear();
+    prop_assert_eq!(list.lengths(), [0; 3]);
+    let again = fitted.first().map_or(Ok(()), |draw| draw.add(screen, materials, &mut list));
+    prop_assert_eq!(again, Ok(()));
+    let first = &fitted[..fitted.len().min(1)];
+    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, Depth16>(screen, first, materials, &SKY).0);
+    Ok(())
+}
+
+#[test]
+fn a_full_list_names_the_capacity_and_is_as_it_was() {
+    let materials = leaked::<QuarterPixel>();
+    let met = Cell::new([0; 4]);
+    for_all("full lists", 250, prop::collection::vec(draw(), 1..12), |draws| {
+        let screen = Size::new(64, 48);
+        full::<0, 0, 0>(screen, &draws, materials, &met)?;
+        full::<4, 2, 1>(screen, &draws, materials, &met)?;
+        full::<63, 20, 8>(screen, &draws, materials, &met)?;
+        full::<64, 1000, 8>(screen, &draws, materials, &met)?;
+        full::<90, 60, 8>(screen, &draws, materials, &met)?;
+        full::<1000, 30, 8>(screen, &draws, materials, &met)?;
+        full::<1000, 500, 2>(screen, &draws, materials, &met)
+    });
+    println!("fitted, full of vertices, triangles, draws: {:?}", met.get());
+    assert!(met.get().iter().all(|&count| count > 100), "{:?}", met.get());
+}
+
+#[test]
+fn a_list_takes_what_it_says() {
+    type List = DisplayList<'static, 400, 440, 4>;
+    assert_eq!(List::bytes(), size_of::<List>());
+    // 16 bytes a vertex, 8 a triangle and 2 for its place in the order; lengths and draws.
+    let room = List::bytes() - 400 * 16 - 440 * 10;
+    assert!(room <= 4 * 64 + 64, "{room} bytes for 4 draws");
+}
+
+/// A display that keeps what it is sent.
+struct Display {
+    size: Size,
+    pixels: Vec<Rgb565>,
+    sent: u32,
+}
+
+impl Display {
+    fn new(size: Size) -> Self {
+        // What a display shows when it is switched on is anything.
+        let noise = |i: u32| Rgb565::new((i % 31) as u8, (i % 63) as u8, (i % 29) as u8);
+        Self { size, pixels: (0..size.width * size.height).map(noise).collect(), sent: 0 }
+    }
+
+    fn send(&mut self, area: &Rectangle, colors: impl Iterator<Item = Rgb565>) {
+        let mut colors = colors.fuse();
+        for point in area.points() {
+            let color = colors.next().expect("as many colours as the area has pixels");
+            self.pixels[(point.y as u32 * self.size.width) as usize + point.x as usize] = color;
+            self.sent += 1;
+        }
+        assert!(colors.next().is_none(), "more colours than the area has pixels");
+    }
+}
+
+/// What the bus says at times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Busy;
+
+/// A frame: what is drawn, the number on top, and what becomes of the bus.
+type Frame = (Vec<Draw>, u8, bool);
+
+fn frames() -> impl Strategy<Value = Vec<Frame>> {
+    // Some things stay, some come and go.
+    (scene(3), prop::collection::vec((scene(2), 0..4_u8, prop::bool::weighted(0.1)), 2..8)).prop_map(
+        |(still, frames)| {
+            let draws = |moving: Vec<Draw>| still.iter().copied().chain(moving).collect();
+            frames.into_iter().map(|(moving, number, fails)| (draws(moving), number, fails)).collect()
+        },
+    )
+}
+
+#[test]
+fn sending_only_what_changed_shows_the_same_as_sending_all() {
+    let materials = leaked::<QuarterPixel>();
+    let saved = Cell::new([0_u64; 2]);
+    let cases = (screen(), 1..20_u32, frames());
+    for_all("changes", 200, cases, |(screen, rows, frames)| {
+        let words = (screen.width * rows) as usize;
+        let (mut pixels, mut depth) = (vec![0; words], vec![0; words]);
+        let mut band = Band::<Rgb565, Depth16>::new(Size::new(screen.width, rows), &mut pixels, &mut depth)
+            .expect("the band is small");
+        let (mut display, mut whole) = (Display::new(screen), Display::new(screen));
+        // Fewer than there are bands, at times.
+        let mut changes = Changes::<12>::new();
+        let mut shown = u8::MAX;
+        let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, screen.height);
+        for (draws, number, fails) in frames {
+            let list = listed::<_, Rgb565>(screen, &draws, materials);
+            let name = ["0", "12", "345", "6789"][usize::from(number)];
+            let style = MonoTextStyle::new(&FONT_4X6, Rgb565::WHITE);
+            let text = Text::new(name, Point::new(2, 8), style);
+            let Ok(()) = list.render_bands(screen.height, &sky, &mut band, |area, band| {
+                let Ok(_) = text.draw(band);
+                whole.send(&area, band.colors());
+                Ok::<_, Infallible>(())
+            });
+            if number != shown {
+                changes.mark(&Rectangle::new(Point::new(2, 0), Size::new(16, 10)));
+                shown = number;
+            }
+            let before = display.sent;
+            let mut left = if fails { 2 } else { u32::MAX };
+            let result = list.render_changed(screen.height, &sky, &mut band, &mut changes, |area, band| {
+                let Ok(_) = text.draw(band);
+                left = left.checked_sub(1).ok_or(Busy)?;
+                display.send(&area, band.colors_in(&area));
+                Ok::<_, Busy>(())
+            });
+            match result {
+                Ok(Flushed { pixels, all_pixels, bands, all_bands }) => {
+                    prop_assert_eq!(pixels, display.sent - before);
+                    prop_assert_eq!(all_pixels, screen.width * screen.height);
+                    prop_assert!(bands <= all_bands && all_bands == screen.height.div_ceil(rows));
+                    prop_assert_eq!(&display.pixels, &whole.pixels);
+                    let [sent, all] = saved.get();
+                    saved.set([sent + u64::from(pixels), all + u64::from(all_pixels)]);
+                }
+                Err(error) => prop_assert!(fails && error == Busy),
+            }
+        }
+        Ok(())
+    });
+    let [sent, all] = saved.get();
+    println!("changes: {sent} of {all} pixels sent, {} %", sent * 100 / all);
+    assert!(sent * 10 < all * 9, "nothing is saved");
+}
+
+#[test]
+fn what_stands_still_behind_a_small_mover_is_not_sent() {
+    let materials = leaked::<QuarterPixel>();
+    let screen = Size::new(64, 48);
+    let (mut pixels, mut depth) = (vec![0; 64 * 8], vec![0; 64 * 8]);
+    let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 8), &mut pixels, &mut depth).expect("it fits");
+    let mut changes = Changes::<6>::default();
+    let mut report = |x: f32| {
+        let pose = fixel::Pose::IDENTITY.scaled_lit(0.25).at(fixel::Vec3::lit(x, 0.0, -2.0));
+        let ball = Draw { mesh: 2, material: 3, pose, inset: false, orthographic: false };
+        let list = listed::<_, Rgb565>(screen, &[ball], materials);
+        let Ok(flushed) =
+            list.render_changed(48, &SKY, &mut band, &mut changes, |_, _| Ok::<_, Infallible>(()));
+        flushed
+    };
+    assert_eq!(report(0.0), Flushed { bands: 6, all_bands: 6, pixels: 64 * 48, all_pixels: 64 * 48 });
+    let next = report(0.1);
+    // A ball of 7 px in the middle, moved by 2 px: two bands of 8 rows.
+    assert!(next.bands == 2 && next.pixels <= 12 * 8, "{next:?}");
+}
+
+/// Without depth a list is drawn back to front, and what is as far in the order of drawing.
+#[test]
+fn without_depth_a_list_is_drawn_back_to_front() {
+    const FACING: fixel::Mesh = fixel::Mesh::new(
+        &[
+            fixel::Vertex::new(-1.0, -1.0, 0.0),
+            fixel::Vertex::new(1.0, -1.0, 0.0),
+            fixel::Vertex::new(0.0, 1.0, 0.0),
+        ],
+        &[[0, 1, 2]],
+    );
+    let colors: Vec<Material> = (0..12).map(|i| Material::flat(Rgb565::new(i, 63 - i, 2 * i))).collect();
+    let triangle = || ([-12..12_i16, -8..8_i16], 1..5_i16);
+    let shown = Cell::new(0_u32);
+    for_all("back to front", 300, prop::collection::vec(triangle(), 1..12), |triangles| {
+        let screen = Size::new(48, 40);
+        let camera = fixel::Camera::focal(24.0, screen);
+        let pose = |&([x, y], away): &([i16; 2], i16)| {
+            let tenths = |n: i16| fixel::fixed::types::I16F16::from_num(n) / 10;
+            fixel::Pose::IDENTITY.at(fixel::Vec3::new(tenths(x), tenths(y), tenths(-10 * away)))
+        };
+        let mut list = DisplayList::<64, 32, 16, _, Rgb565>::new();
+        for (triangle, material) in triangles.iter().zip(&colors) {
+            prop_assert_eq!(camera.draw(&FACING, &pose(triangle), material, &mut list), Ok(()));
+        }
+        list.sort_back_to_front();
+        let mut sorted: Vec<_> = triangles.iter().zip(&colors).collect();
+        sorted.sort_by_key(|((_, away), _)| -away); // it is stable
+        let mut pixels = [vec![0; 48 * 40], vec![0; 48 * 40]];
+        let [of_list, at_once] = &mut pixels;
+        list.render(0, &mut Band::<_, NoDepth>::new(screen, of_list, &mut [(); 48 * 40]).expect("it fits"));
+        let mut none = [(); 48 * 40];
+        let mut band = Band::<Rgb565, NoDepth>::new(screen, at_once, &mut none).expect("it fits");
+        for (triangle, material) in sorted {
+            camera.draw(&FACING, &pose(triangle), material, &mut band);
+        }
+        prop_assert_eq!(&pixels[0], &pixels[1]);
+        shown.set(shown.get() + pixels[0].iter().filter(|word| **word != 0).count() as u32);
+        Ok(())
+    });
+    assert!(shown.get() > 10_000);
+}
+
+#[test]
+fn backgrounds_fill_rows_of_the_screen() {
+    let size = Size::new(20, 6);
+    let (mut pixels, mut depth) = (vec![0; 120], vec![7; 120]);
+    let mut band =
+        Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth).expect("it fits").starting_at(30);
+    band.clear_to(&Rgb565::RED);
+    assert!(band.pixels().iter().all(|word| *word == 0xf800) && band.depth().iter().all(|depth| *depth == 0));
+
+    let texture = Texture::new(&TEXELS, 4, 4);
+    band.clear_to(&texture);
+    for (i, word) in band.pixels().iter().enumerate() {
+        let (x, y) = (i % 20, 30 + i / 20);
+        assert_eq!(*word, TEXELS[y % 16 * 16 + x % 16], "column {x}, row {y}");
+    }
+
+    // 17 words a row, and 2½ rows below 30.
+    let words: Vec<u16> = (1..=32 * 17 + 8).collect();
+    band.clear_to(&Picture::new(&words, 17));
+    for (i, word) in band.pixels().iter().enumerate() {
+        let (x, y) = (i % 20, 30 + i / 20);
+        let expected = if x < 17 { words.get(y * 17 + x).copied().unwrap_or(0) } else { 0 };
+        assert_eq!(*word, expected, "column {x}, row {y}");
+    }
+
+    // In the middle half of both; exact at the ends, and beyond.
+    let gradient = Gradient::new(Rgb888::new(0, 255, 8), Rgb888::new(255, 0, 8), 65);
+    for (row, expected) in [(0, [0, 255, 8]), (32, [128, 128, 8]), (64, [255, 0, 8]), (900, [255, 0, 8])] {
+        band.move_to(row);
+        band.clear_to(&gradient);
+        let [red, green, blue] = expected;
+        assert_eq!(band.pixels()[19], <Rgb565 as PixelFormat>::rgb888(red, green, blue), "row {row}");
+    }
+    for height in [0, 1, 2, 1023, u32::MAX] {
+        band.move_to(1000);
+        band.clear_to(&Gradient::new(Rgb888::WHITE, Rgb888::BLACK, height));
+    }
+}
+
+#[test]
+fn parts_of_a_band_are_given_out_by_rows_and_colours() {
+    let (mut pixels, mut depth): (Vec<u16>, _) = ((0..60).collect(), [(); 60]);
+    let band = Band::<Rgb565, NoDepth>::new(Size::new(10, 6), &mut pixels, &mut depth)
+        .expect("it fits")
+        .starting_at(4);
+    let area = Rectangle::new(Point::new(7, 2), Size::new(9, 4));
+    let rows: Vec<Vec<u16>> = band.rows_in(&area).map(<[u16]>::to_vec).collect();
+    assert_eq!(rows, [[7, 8, 9], [17, 18, 19]]);
+    let colors: Vec<u16> = band.colors_in(&area).map(|color| color.into_storage()).collect();
+    assert_eq!(colors, [7, 8, 9, 17, 18, 19]);
+    assert_eq!(band.rows_in(&Rectangle::new(Point::new(0, 90), Size::new(9, 4))).count(), 0);
+    let (pixels, _) = band.into_slices();
+    assert_eq!(pixels.len(), 60);
+}

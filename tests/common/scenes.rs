@@ -1,0 +1,123 @@
+//! Random scenes of several meshes, poses, cameras and materials.
+
+use fixel::embedded_graphics::prelude::*;
+use fixel::fixed::types::I16F16;
+use fixel::shapes::{self, Shape};
+use fixel::{
+    Camera, Cull, DisplayList, Light, Lights, Material, Mesh, PixelFormat, Pose, Quality, Texture, Turn,
+    Vec3, Vertex,
+};
+use proptest::prelude::*;
+
+static TORUS: Shape<63, 96> = shapes::torus_textured(1.0, 0.45, 8, 6, [256, 64]);
+static BALL: Shape<12, 20> = shapes::icosphere(0.8, 1);
+
+/// Larger than the world of a camera at the origin: it is cut at the near plane and at the guard band.
+static GROUND: [Vertex; 4] = [
+    Vertex::new(-5.0, -0.125, 0.1).uv(-640, 0).color(200, 10, 10),
+    Vertex::new(5.0, -0.125, 0.1).uv(640, 0).color(10, 200, 10),
+    Vertex::new(5.0, -0.125, -3.75).uv(640, 482).color(10, 10, 200),
+    Vertex::new(-5.0, -0.125, -3.75).uv(-640, 482),
+];
+
+/// The meshes of all scenes.
+pub(crate) fn meshes() -> [Mesh<'static>; 4] {
+    let torus = TORUS.mesh();
+    let ground = Mesh::try_new(&GROUND, &[[0, 1, 2], [0, 2, 3]]).expect("the indices are in range");
+    [torus, torus.part(30, 55), BALL.mesh(), ground]
+}
+
+/// The texture of all scenes: each texel differs from its neighbours.
+pub(crate) static TEXELS: [u16; 256] = {
+    let mut texels = [0; 256];
+    let mut i = 0;
+    while i < 256 {
+        texels[i] = (i as u16).wrapping_mul(40_503) ^ 0x5555;
+        i += 1;
+    }
+    texels
+};
+static SUN: [Light; 2] = [
+    Light::directional(Vec3::lit(-0.4, -0.6, -0.7), [208, 190, 150]),
+    Light::point(Vec3::lit(1.0, 1.0, -1.0), [90, 20, 200], I16F16::lit("3")),
+];
+static LIGHTS: Lights = Lights::new([30, 40, 50], &SUN);
+
+/// How many materials there are.
+pub(crate) const MATERIALS: usize = 8;
+
+/// One of each kind.
+pub(crate) fn materials<Q: Quality>() -> [Material<'static, Q>; MATERIALS] {
+    let texture = Texture::new(&TEXELS, 4, 4);
+    let textured = Material::textured(&texture);
+    [
+        Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_GOLD),
+        textured.cull(Cull::None),
+        Material::gouraud(),
+        Material::gouraud().lit(&LIGHTS),
+        textured.lit(&LIGHTS),
+        textured.texture_scale(1).lit(&LIGHTS).faceted().two_sided(),
+        Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_TEAL).lit(&LIGHTS).faceted(),
+        textured,
+    ]
+    .map(Material::quality)
+}
+
+/// One call of `Camera::draw`, by numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Draw {
+    pub(crate) mesh: usize,
+    pub(crate) material: usize,
+    pub(crate) pose: Pose,
+    /// Whether in a viewport that is a part of the screen.
+    pub(crate) inset: bool,
+    pub(crate) orthographic: bool,
+}
+
+impl Draw {
+    pub(crate) fn camera(&self, screen: Size) -> Camera {
+        let size = if self.inset { screen / 2 } else { screen };
+        let focal = size.width.max(8) as f32 / 2.0;
+        let camera = if self.orthographic {
+            Camera::orthographic(focal / 2.0, size)
+        } else {
+            Camera::focal(focal, size).near(0.1)
+        };
+        camera.viewport(if self.inset { Point::new(3, 5) } else { Point::zero() })
+    }
+
+    /// Into a list.
+    pub(crate) fn add<const V: usize, const T: usize, const D: usize, Q: Quality, F: PixelFormat>(
+        &self,
+        screen: Size,
+        materials: &'static [Material<'static, Q>; MATERIALS],
+        list: &mut DisplayList<'static, V, T, D, Material<'static, Q>, F>,
+    ) -> Result<(), fixel::CapacityError> {
+        self.camera(screen).draw(&meshes()[self.mesh], &self.pose, &materials[self.material], list)
+    }
+}
+
+/// Somewhere before or around the eye.
+pub(crate) fn draw() -> impl Strategy<Value = Draw> {
+    let turns = any::<[u16; 3]>();
+    let place = ([-30..30_i16, -20..20_i16], -60..-5_i16);
+    (0..4_usize, 0..MATERIALS, turns, place, prop_oneof![4 => Just(false), 1 => Just(true)], 0..5_u8)
+        .prop_map(|(mesh, material, [x, y, z], ([right, up], away), inset, kind)| {
+            let at = |tenths: i16| I16F16::from_num(tenths) / 10;
+            let turn = Turn::from_raw;
+            let turned = Pose::IDENTITY.rotated_x(turn(x)).rotated_y(turn(y)).rotated_z(turn(z));
+            // The ground stays level, and is larger.
+            let turned = if mesh == 3 { Pose::IDENTITY.rotated_y(turn(y)).scaled_lit(8.0) } else { turned };
+            let place = if mesh == 3 {
+                Vec3::new(at(0), at(up / 10), at(0))
+            } else {
+                Vec3::new(at(right), at(up), at(away))
+            };
+            Draw { mesh, material, pose: turned.at(place), inset, orthographic: kind == 0 && mesh != 3 }
+        })
+}
+
+/// Some draws.
+pub(crate) fn scene(most: usize) -> impl Strategy<Value = Vec<Draw>> {
+    prop::collection::vec(draw(), 0..=most)
+}
