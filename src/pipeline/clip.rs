@@ -207,7 +207,7 @@ impl Clip {
         }
         let fits = polygon.iter().zip(&mut *to).all(|(vertex, to)| {
             (to.u, to.v, to.color) = (vertex.u, vertex.v, vertex.color);
-            self.project(|axis| vertex.at[axis], &GUARD_BAND, to)
+            self.project(|axis| vertex.at[axis], &GUARD_BAND, (&mut to.x, &mut to.y, &mut to.q))
         });
         fits.then_some(polygon.len())
     }
@@ -224,7 +224,8 @@ impl Clip {
         to: &mut ScreenVertex,
     ) -> bool {
         let position = vertex.position.map(|at| i32::from(at.to_bits()));
-        if !self.project(|axis| to_clip.place(position, axis), &CUT, to) {
+        let place = (&mut to.x, &mut to.y, &mut to.q);
+        if !self.project(|axis| to_clip.place(position, axis), &CUT, place) {
             return false;
         }
         to.u = vertex.uv[0].into();
@@ -234,10 +235,15 @@ impl Clip {
     }
 
     /// As [`Clip::place`], the position and q alone.
-    #[inline(never)]
-    pub(super) fn locate(&self, to_clip: &ToClip, vertex: &Vertex, to: &mut ScreenVertex) -> bool {
+    #[inline(always)]
+    pub(super) fn locate(
+        &self,
+        to_clip: &ToClip,
+        vertex: &Vertex,
+        place: (&mut I12F4, &mut I12F4, &mut U1F31),
+    ) -> bool {
         let position = vertex.position.map(|at| i32::from(at.to_bits()));
-        self.project(|axis| to_clip.place(position, axis), &CUT, to)
+        self.project(|axis| to_clip.place(position, axis), &CUT, place)
     }
 
     /// 1/w, or what is in its place without perspective.
@@ -267,7 +273,12 @@ impl Clip {
     /// (1/16 px) not in `range`. Each coordinate is computed where it is used, and each result stored at once: there are
     /// few registers.
     #[inline(always)]
-    fn project(&self, at: impl Fn(usize) -> i32, range: &RangeInclusive<i32>, to: &mut ScreenVertex) -> bool {
+    fn project(
+        &self,
+        at: impl Fn(usize) -> i32,
+        range: &RangeInclusive<i32>,
+        (to_x, to_y, to_q): (&mut I12F4, &mut I12F4, &mut U1F31),
+    ) -> bool {
         let w = at(2);
         if w < self.near || w > self.far {
             return false;
@@ -285,14 +296,14 @@ impl Clip {
                 shift => ((quotient >> (shift - 1).min(30)) + 1) >> 1,
             }
         };
-        to.q = U1F31::from_bits(q);
+        *to_q = U1F31::from_bits(q);
         let x = self.screen(at(0), 0, inverse);
         if !range.contains(&x) {
             return false;
         }
-        to.x = I12F4::from_bits(x as i16);
+        *to_x = I12F4::from_bits(x as i16);
         let y = self.screen(at(1), 1, inverse);
-        to.y = I12F4::from_bits(y as i16);
+        *to_y = I12F4::from_bits(y as i16);
         range.contains(&y)
     }
 

@@ -21,15 +21,15 @@ use heapless::VecView;
 pub(crate) struct ListVertex {
     x: I12F4,
     y: I12F4,
-    /// U1F31; while a mesh is recorded the top bit is [`KEPT`].
-    q: u32,
+    /// While a mesh is recorded the top bit is [`KEPT`].
+    q: U1F31,
     attributes: [u16; 4],
 }
 
 const _: () = assert!(size_of::<ListVertex>() == 16);
 
-/// A triangle that is drawn has this vertex.
-const KEPT: u32 = 1 << 31;
+/// A triangle that is drawn has this vertex. (q is below 1.)
+const KEPT: U1F31 = U1F31::from_bits(1 << 31);
 /// x of a vertex that has to be cut off.
 const CUT_OFF: I12F4 = I12F4::MIN;
 /// In the place of a mesh's vertex: u and v are in the next slot.
@@ -53,12 +53,18 @@ pub(crate) const ROWS_LOG2: u32 = 2;
 
 impl ListVertex {
     fn new(at: &ScreenVertex) -> Self {
-        Self { x: at.x, y: at.y, q: at.q.to_bits().min(i32::MAX as u32), attributes: [0; 4] }
+        Self { x: at.x, y: at.y, q: at.q, attributes: [0; 4] }
     }
 
-    fn uv(u: I16F16, v: I16F16) -> [u16; 4] {
+    /// u and v as attributes: for each its fraction and its whole texels.
+    fn attributes_of([u, v]: [I16F16; 2]) -> [u16; 4] {
         let [u, v] = [u, v].map(|t| t.to_bits() as u32);
         [u as u16, (u >> 16) as u16, v as u16, (v >> 16) as u16]
+    }
+
+    fn uv(&self) -> [I16F16; 2] {
+        let [u, u_whole, v, v_whole] = self.attributes.map(u32::from);
+        [u | u_whole << 16, v | v_whole << 16].map(|bits| I16F16::from_bits(bits as i32))
     }
 
     fn position(&self) -> [i32; 2] {
@@ -74,53 +80,47 @@ pub(crate) struct ListView<'l> {
 }
 
 impl ListView<'_> {
-    /// A corner for set-up, as it went into the list.
-    #[inline]
-    fn corner(&self, slot: u16, inputs: Inputs, mesh: &[Vertex]) -> ScreenVertex {
-        let Some(at) = self.vertices.get(usize::from(slot)) else {
-            return ScreenVertex::default();
-        };
-        let mut vertex =
-            ScreenVertex { x: at.x, y: at.y, q: U1F31::from_bits(at.q), ..ScreenVertex::default() };
-        let texels = |[u, u_high, v, v_high]: [u16; 4]| {
-            [u32::from(u) | u32::from(u_high) << 16, u32::from(v) | u32::from(v_high) << 16]
-                .map(|bits| I16F16::from_bits(bits as i32))
-        };
-        let [red, green, blue, of_mesh] = at.attributes;
-        if matches!(inputs, Inputs::Color | Inputs::UvColor) {
-            vertex.color = [red, green, blue].map(U8F8::from_bits);
-        }
-        match inputs {
-            Inputs::Uv => [vertex.u, vertex.v] = texels(at.attributes),
-            Inputs::UvColor if of_mesh == IN_NEXT => {
-                if let Some(next) = self.vertices.get(usize::from(slot) + 1) {
-                    [vertex.u, vertex.v] = texels(next.attributes);
-                }
-            }
-            Inputs::UvColor => {
-                if let Some(of_mesh) = mesh.get(usize::from(of_mesh)) {
-                    [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
-                }
-            }
-            Inputs::None | Inputs::Color => {}
-        }
-        vertex
-    }
-
-    /// A triangle's corners.
+    /// A triangle's corners for set-up, as they went into the list; attributes not among the inputs are left as they are.
     #[inline]
     pub(crate) fn corners(
         &self,
         triangle: &ListTriangle,
         inputs: Inputs,
         mesh: &[Vertex],
-    ) -> [ScreenVertex; 3] {
-        triangle.corners.map(|slot| self.corner(slot, inputs, mesh))
+        to: &mut [ScreenVertex; 3],
+    ) {
+        for (to, slot) in to.iter_mut().zip(triangle.corners) {
+            self.fetch(slot, inputs, mesh, to);
+        }
+    }
+
+    #[inline]
+    fn fetch(&self, slot: u16, inputs: Inputs, mesh: &[Vertex], to: &mut ScreenVertex) {
+        let Some(at) = self.vertices.get(usize::from(slot)) else {
+            return;
+        };
+        (to.x, to.y, to.q) = (at.x, at.y, at.q);
+        if inputs == Inputs::Uv {
+            [to.u, to.v] = at.uv();
+            return;
+        }
+        let [red, green, blue, of_mesh] = at.attributes;
+        to.color = [red, green, blue].map(U8F8::from_bits);
+        if inputs != Inputs::UvColor {
+            return;
+        }
+        if of_mesh == IN_NEXT {
+            if let Some(next) = self.vertices.get(usize::from(slot) + 1) {
+                [to.u, to.v] = next.uv();
+            }
+        } else if let Some(of_mesh) = mesh.get(usize::from(of_mesh)) {
+            [to.u, to.v] = of_mesh.uv.map(I16F16::from);
+        }
     }
 
     /// Three times how near a triangle's middle is, in near/w with 29 fraction bits.
     pub(crate) fn nearness(&self, triangle: &ListTriangle) -> u32 {
-        let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |vertex| vertex.q >> 2);
+        let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |vertex| vertex.q.to_bits() >> 2);
         triangle.corners.iter().map(|&slot| q(slot)).sum()
     }
 
@@ -210,21 +210,24 @@ pub(crate) fn record(
     let own = start..start + count;
     let first_triangle = triangles.len();
     let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, base, own };
-    recorder.place(first..=last, stats);
+    recorder.place(first, stats);
     recorder.add_triangles(stats)?;
     recorder.move_together(first, first_triangle);
     Ok(())
 }
 
 impl Recorder<'_, '_> {
-    fn place(&mut self, indices: core::ops::RangeInclusive<u16>, stats: &mut impl Count) {
-        let mut at = ScreenVertex::default();
-        for index in indices {
+    /// Every vertex that the mesh names goes to its slot. There is room.
+    #[inline(never)]
+    fn place(&mut self, first: u16, stats: &mut impl Count) {
+        let _ = self.vertices.resize_default(self.own.end);
+        let slots = self.vertices.get_mut(self.own.clone()).unwrap_or_default();
+        let of_mesh = self.mesh.vertices().get(usize::from(first)..).unwrap_or_default();
+        for (slot, vertex) in slots.iter_mut().zip(of_mesh) {
             stats.count(|stats| &mut stats.transformed);
-            let seen = self.clip.locate(&self.to_clip, self.mesh.vertex(index), &mut at);
-            let vertex = ListVertex::new(&at);
-            // There is room.
-            let _ = self.vertices.push(if seen { vertex } else { ListVertex { x: CUT_OFF, ..vertex } });
+            if !self.clip.locate(&self.to_clip, vertex, (&mut slot.x, &mut slot.y, &mut slot.q)) {
+                slot.x = CUT_OFF;
+            }
         }
     }
 
@@ -296,7 +299,7 @@ impl Recorder<'_, '_> {
         let Some(vertex) = self.vertices.get_mut(slot) else {
             return;
         };
-        if vertex.q & KEPT != 0 {
+        if vertex.q & KEPT != U1F31::ZERO {
             return;
         }
         vertex.q |= KEPT;
@@ -317,7 +320,7 @@ impl Recorder<'_, '_> {
             let of_mesh = self.mesh.vertex(index);
             let mut vertex = ScreenVertex::default();
             if let Some(at) = self.vertices.get(usize::from(slot)) {
-                (vertex.x, vertex.y, vertex.q) = (at.x, at.y, U1F31::from_bits(at.q));
+                (vertex.x, vertex.y, vertex.q) = (at.x, at.y, at.q);
             }
             [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
             self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
@@ -371,7 +374,7 @@ impl Recorder<'_, '_> {
     /// A corner that no vertex of the mesh stands for.
     fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
         let slot = self.vertices.len();
-        let uv = ListVertex::uv(at.u, at.v);
+        let uv = ListVertex::attributes_of([at.u, at.v]);
         let [red, green, blue] = at.color.map(U8F8::to_bits);
         let vertex = ListVertex::new(at);
         match self.style.inputs {
@@ -401,7 +404,7 @@ impl Recorder<'_, '_> {
         // Where each goes: into the place of the mesh's vertex, which is known as long as it stays.
         let mut next = own.start as u16;
         for vertex in vertices.get_mut(own.clone()).unwrap_or_default() {
-            if vertex.q & KEPT != 0 {
+            if vertex.q & KEPT != U1F31::ZERO {
                 vertex.attributes[3] = next;
                 next += 1;
             }
@@ -421,14 +424,13 @@ impl Recorder<'_, '_> {
                 return;
             };
             if from < own.end {
-                if vertex.q & KEPT == 0 {
+                if vertex.q & KEPT == U1F31::ZERO {
                     continue;
                 }
                 vertex.q &= !KEPT;
                 let index = first + (from - own.start) as u16;
                 if style.inputs == Inputs::Uv {
-                    let [u, v] = mesh.vertex(index).uv;
-                    vertex.attributes = ListVertex::uv(u.into(), v.into());
+                    vertex.attributes = ListVertex::attributes_of(mesh.vertex(index).uv.map(I16F16::from));
                 } else {
                     vertex.attributes[3] = index;
                 }

@@ -4,8 +4,8 @@ use super::canvas::{Canvas, sealed::Sealed};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
-    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, ROWS_LOG2, Raster, Shader,
-    Style, Window, record,
+    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, ROWS_LOG2, Raster,
+    ScreenVertex, Shader, Style, Window, record,
 };
 use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
 use core::fmt;
@@ -284,6 +284,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     let mut ids = 0..draw.end;
     let mut raster =
         Raster::new(draw.shader, draw.is_orthographic, window.clone().within(&draw.viewport), band);
+    let mut corners = [ScreenVertex::default(); 3];
     for &id in order {
         let Some(triangle) = view.triangles.get(usize::from(id)) else {
             return;
@@ -301,7 +302,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
             ids = before.map_or(0, |before| before.end)..draw.end;
             raster.change(draw.shader, draw.is_orthographic, window.clone().within(&draw.viewport));
         }
-        let corners = view.corners(triangle, draw.inputs, draw.vertices);
+        view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw(corners.each_ref(), Cull::None, &mut ());
     }
 }
