@@ -15,7 +15,7 @@
 //! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |
 //! | memory | no `alloc`, no recursion; every capacity is a constant |
 //! | safety | no `unsafe`; no input panics a release build, none writes outside the target, none overflows |
-//! | failure | bad assets are a compile error through `const fn new` (meant for `const`; elsewhere it panics, documented, the only exception) and a typed error through `try_new`; targets are at most 1023 × 1023, a typed error beyond |
+//! | failure | running out of a capacity is a [`CapacityError`] that names it and leaves the list as it was; bad assets are a compile error through `const fn new` (meant for `const`; elsewhere it panics, documented, the only exception) and a typed error through `try_new`; targets are at most 1023 × 1023, a typed error beyond |
 //!
 //! # Example
 //!
@@ -71,6 +71,40 @@
 //! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
 //! - **shade** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
 //!   divisions attributes follow the quadratic that has both ends and the slopes there.
+//!
+//! A [`DisplayList`] cuts this in two behind **clip**: it keeps the screen vertices and the triangles that are seen, each vertex
+//! transformed and lit once, and sends them through the rest as often as there are bands.
+//!
+//! # A scene bigger than RAM
+//!
+//! 240 × 320 pixels with depth are 300 KiB as a frame, and 15 KiB as a band of 16 rows. A [`DisplayList`] keeps what a camera drew
+//! in 16 bytes a vertex and 10 a triangle, and is rendered band by band:
+//!
+//! ```
+//! # use embedded_graphics::{mock_display::MockDisplay, pixelcolor::{Rgb565, Rgb888}, prelude::*};
+//! # use fixel::{prelude::*, Gradient};
+//! # const TRIANGLE: Mesh = Mesh::new(
+//! #     &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+//! #     &[[0, 1, 2]],
+//! # );
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut display = MockDisplay::new();
+//! # let camera = Camera::perspective(Turn::from_degrees(60), display.size()).at(Vec3::lit(0.0, 0.0, 2.5));
+//! # let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
+//! # let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?;
+//! let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, display.size().height);
+//! let gold = Material::flat(Rgb565::CSS_GOLD); // borrowed by the list, as the mesh's vertices are
+//! let mut list = DisplayList::<8, 4, 1>::new(); // at most so many vertices, triangles and draws
+//! camera.draw(&TRIANGLE, &Pose::IDENTITY, &gold, &mut list)?;
+//! list.render_bands(display.size().height, &sky, &mut band, |area, band| {
+//!     display.fill_contiguous(&area, band.colors()) // 2D on top: draw it into `band` before
+//! })?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! [`DisplayList::render_changed`] draws and sends only what changed since the last frame; without depth
+//! [`DisplayList::sort_back_to_front`] settles what is in front; two cores can render two bands of one list.
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.

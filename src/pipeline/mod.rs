@@ -4,6 +4,8 @@
 //!            transform         clip            setup            span      shade
 //! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
 //! ```
+//!
+//! [`draw`] takes a mesh through all of it; [`record`] as far as to screen vertices, which a display list keeps.
 
 mod attribute;
 mod clip;
