@@ -4,7 +4,7 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, packed_from, packed_step, shifted, uv_in_units};
+use super::fill::{Fill, in_pairs, packed_from, packed_step, plus, shifted, uv_in_units};
 use crate::scene::Texture;
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -126,11 +126,13 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
-        let (mut at, mut step, bend) = (C::pack(at), C::pack(step), C::pack(bend));
-        for pixel in pixels {
+        let draw = |pixel: &mut F::Word, [at, step]: &mut [C; 2]| {
             *pixel = color::<F>(at.rgb());
-            (at, step) = (at.plus(step), step.plus(bend));
-        }
+            *at = at.plus(*step);
+        };
+        in_pairs(pixels, [at, step].map(C::pack), C::pack(bend), draw, |[_, step], bend| {
+            *step = step.plus(bend);
+        });
     }
 }
 
@@ -153,20 +155,22 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         &self,
         pixels: &mut [F::Word],
         [at, step, bend]: [[i32; 2]; 3],
-        [mut light, mut light_step, light_bend]: [C; 3],
+        [light, light_step, light_bend]: [C; 3],
     ) where
         C: Channels<M>,
     {
         if !self.is_packed {
             return self.run_unpacked(pixels, [at, step, bend], [light, light_step, light_bend]);
         }
-        let mut packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
-        let (mut step, bend) = (packed_step(step), packed_step(bend));
-        for pixel in pixels {
-            *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
-            (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
-            (step, light_step) = (step.wrapping_add(bend), light_step.plus(light_bend));
-        }
+        let packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
+        let (step, bend, light) = (packed_step(step), packed_step(bend), [light, light_step]);
+        let draw = |pixel: &mut F::Word, (at, light): &mut ([u32; 2], [C; 2])| {
+            *pixel = lit::<F>(self.texture.fetch_packed(at[0]), light[0].rgb());
+            (at[0], light[0]) = (at[0].wrapping_add(at[1]), light[0].plus(light[1]));
+        };
+        in_pairs(pixels, ([packed, step], light), (bend, light_bend), draw, |(at, light), bend| {
+            (at[1], light[1]) = (at[1].wrapping_add(bend.0), light[1].plus(bend.1));
+        });
     }
 
     /// As [`LitTexels::run`] of a texture that is not packable.
@@ -174,18 +178,20 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     fn run_unpacked<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        [mut at, mut step, bend]: [[i32; 2]; 3],
-        [mut light, mut light_step, light_bend]: [C; 3],
+        [at, step, bend]: [[i32; 2]; 3],
+        [light, light_step, light_bend]: [C; 3],
     ) where
         C: Channels<M>,
     {
-        for pixel in pixels {
-            *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
-            for i in 0..2 {
-                (at[i], step[i]) = (at[i].wrapping_add(step[i]), step[i].wrapping_add(bend[i]));
-            }
-            (light, light_step) = (light.plus(light_step), light_step.plus(light_bend));
-        }
+        let light = [light, light_step];
+        let draw = |pixel: &mut F::Word, (at, light): &mut ([[i32; 2]; 2], [C; 2])| {
+            let [[u, v], step] = *at;
+            *pixel = lit::<F>(self.texture.fetch(u >> 16, v >> 16), light[0].rgb());
+            (at[0], light[0]) = (plus([u, v], step), light[0].plus(light[1]));
+        };
+        in_pairs(pixels, ([at, step], light), (bend, light_bend), draw, |(at, light), bend| {
+            (at[1], light[1]) = (plus(at[1], bend.0), light[1].plus(bend.1));
+        });
     }
 
     #[inline]
