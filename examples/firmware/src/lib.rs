@@ -13,5 +13,6 @@ pub mod bench;
 pub mod checksum;
 pub mod cost;
 pub mod gray4;
+pub mod s4;
 pub mod scene;
 pub mod ssd0323;

@@ -6,6 +6,7 @@
 //! Needs QEMU and rustup's targets thumbv6m-none-eabi, thumbv7m-none-eabi and thumbv7em-none-eabihf, and fails without;
 //! `FIXEL_SKIP_BOARDS=1` skips it.
 
+mod bands;
 mod counts;
 mod emulator;
 
