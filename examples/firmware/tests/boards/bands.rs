@@ -33,6 +33,27 @@ fn whole() -> Vec<u16> {
     pixels
 }
 
+/// `bands.txt`: of each height of the bands, and of the frame drawn at once (0), bytes of RAM and cycles on two cores.
+fn table() -> Vec<(u64, u64, [u64; 2])> {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/bands.txt"));
+    let number = |word: &str| word.parse().unwrap_or_else(|_| panic!("{word:?} is not a number"));
+    let text = text.expect("the table is in this package");
+    let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| {
+        let words = line.split_whitespace().collect::<Vec<_>>();
+        let [rows, ram, m0plus, m4f] = *words else { panic!("{line:?} is not a row of the table") };
+        (if rows == "whole" { 0 } else { number(rows) }, number(ram), [m0plus, m4f].map(number))
+    });
+    lines.collect()
+}
+
+#[test]
+fn bands_of_16_rows_take_at_most_15_percent_more_cycles_than_a_frame_drawn_at_once() {
+    let cycles = |rows: u64| table().iter().find(|row| row.0 == rows).expect("the table has the height").2;
+    for (bands, whole) in cycles(16).iter().zip(cycles(0)) {
+        assert!(bands * 100 <= whole * 115, "{bands} cycles, and {whole} at once");
+    }
+}
+
 /// One test for both, as they are one program, built twice.
 #[test]
 fn the_bands_program_shows_a_whole_frame_in_little_ram() {
@@ -73,6 +94,8 @@ fn the_bands_program_shows_a_whole_frame_in_little_ram() {
         assert_eq!([size("::COLORS"), size("::DEPTH")], [band; 2]);
         assert!(size("::LIST") <= List::bytes() as u64);
         assert_eq!(size("::COLORS") + size("::DEPTH") + size("::LIST"), statics);
+        let row = table().into_iter().find(|row| row.0 == rows).expect("the table has the height");
+        assert_eq!(row.1, statics, "bytes of {rows} rows in bands.txt");
         assert!(statics + stack as u64 <= limit, "{statics} + {stack} bytes are more than {limit}");
     }
 }

@@ -1,6 +1,6 @@
-//! The program on the board. All of its RAM is in these three buffers, the stack and what printing needs.
+//! The program on the board: its RAM is these three buffers and the stack.
 
-use crate::{PIXELS, frame};
+use crate::frame::{self, PIXELS};
 use fixel_firmware::s4::List;
 use semihosting::{experimental::env, println, process};
 
@@ -14,7 +14,7 @@ fn main() -> ! {
     let arguments = env::args::<64>().expect("the command line fits");
     let hold = (&arguments).into_iter().any(|argument| argument == Ok("hold"));
 
-    println!("s4 rgb565 {:08X}", frame(COLORS, DEPTH, LIST));
+    println!("s4 rgb565 {:08X}", frame::draw(COLORS, DEPTH, LIST));
     if hold {
         loop {
             cortex_m::asm::wfi();

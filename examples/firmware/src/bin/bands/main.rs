@@ -18,6 +18,8 @@ compile_error!(
 #[expect(unsafe_code, reason = "exported symbols")]
 #[path = "../bench/bare.rs"]
 mod bare;
+#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
+mod frame;
 #[cfg(any(board = "bare", board = "mps2"))]
 #[expect(unsafe_code, reason = "exported symbols, and frames that are too large for a stack")]
 mod functions;
@@ -26,37 +28,9 @@ mod lm3s6965;
 #[cfg(board = "mps2")]
 mod mps2;
 
-#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
-use embedded_graphics::prelude::*;
-#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
-use fixel_firmware::{
-    bench::Deep,
-    checksum::Rgb565Sum,
-    s4::{self, List},
-};
-
-/// What is drawn at a time.
-#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
-const BAND: Size = Size::new(s4::SIZE.width, if cfg!(feature = "rows-8") { 8 } else { 16 });
-/// Its pixels.
-#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
-const PIXELS: usize = (BAND.width * BAND.height) as usize;
-
-/// Draws the scene; returns the checksum of the whole screen's words.
-#[cfg(any(board = "lm3s6965evb", not(target_os = "none")))]
-fn frame(pixels: &mut [u16; PIXELS], depth: &mut [u16; PIXELS], list: &mut List) -> u32 {
-    s4::record(list).expect("the list holds the scene");
-    let mut band = Deep::new(BAND, pixels, depth).expect("the buffers hold it");
-    let mut sum = Rgb565Sum::new();
-    let Ok(()) = s4::render(list, &mut band, |band| {
-        sum.add(band.pixels());
-        Ok::<_, core::convert::Infallible>(())
-    });
-    sum.finish()
-}
-
 #[cfg(not(target_os = "none"))]
 fn main() {
-    let (mut pixels, mut depth) = ([0; PIXELS], [0; PIXELS]);
-    println!("s4 rgb565 {:08X}", frame(&mut pixels, &mut depth, &mut List::new()));
+    let (mut pixels, mut depth) = ([0; frame::PIXELS], [0; frame::PIXELS]);
+    let rgb565 = frame::draw(&mut pixels, &mut depth, &mut fixel_firmware::s4::List::new());
+    println!("s4 rgb565 {rgb565:08X}");
 }
