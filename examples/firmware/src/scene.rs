@@ -1,11 +1,14 @@
 //! A brick cube that turns above a floor: the same frames on every board and on a desktop.
 
+use core::convert::Infallible;
+
 use embedded_graphics::{
     mono_font::{MonoTextStyle, ascii::FONT_4X6},
     pixelcolor::{Gray4, Rgb565},
     prelude::*,
     text::Text,
 };
+use fixel::CapacityError;
 use fixel::prelude::*;
 
 use crate::{
@@ -18,8 +21,8 @@ pub const FRAMES: u32 = 32;
 /// The picture of the OLED.
 pub const OLED: Size = Size::new(128, 64);
 /// The picture of the micro:bit, for which no display is emulated: its checksums are printed.
-pub const MICROBIT: Size = Size::new(64, 64);
-/// Rows that both boards draw at a time.
+pub const MICROBIT: Size = Size::new(128, 128);
+/// Rows that boards draw at a time.
 pub const BAND_ROWS: usize = 16;
 
 /// 32 × 32 texels; `tests/assets.rs` makes the file.
@@ -29,6 +32,10 @@ const BRICK: [u16; 1024] = texels(include_bytes!("../assets/brick.rgb565"));
 static SHADES: [[u16; 1024]; 3] = [BRICK, shade(&BRICK, 6), shade(&BRICK, 4)];
 static TEXTURES: [Texture; 3] =
     [Texture::new(&SHADES[0], 5, 5), Texture::new(&SHADES[1], 5, 5), Texture::new(&SHADES[2], 5, 5)];
+
+static BRICKS: [Material; 3] =
+    [Material::textured(&TEXTURES[0]), Material::textured(&TEXTURES[1]), Material::textured(&TEXTURES[2])];
+static GRASS: Material = Material::gouraud();
 
 /// Darkens each channel to `eighths` of what it is, at compile time.
 const fn shade(texels: &[u16; 1024], eighths: u16) -> [u16; 1024] {
@@ -74,6 +81,31 @@ const CAPTION: MonoTextStyle<'static, Rgb565> = MonoTextStyle::new(&FONT_4X6, Rg
 /// A strip of rows of the picture.
 pub type Strip<'a> = Band<'a, Rgb565, Depth16>;
 
+/// Room for any frame.
+pub type List = DisplayList<'static, 24, 12, 4>;
+
+/// A mesh, where it stands, and its surface.
+type Thing = (&'static Mesh<'static>, Pose, &'static Material<'static>);
+
+/// What there is to draw in a frame.
+fn things(frame: u32) -> [Thing; 4] {
+    let floor = Pose::IDENTITY.scaled_lit(4.0).at(Vec3::lit(0.0, -1.5, 0.0));
+    // The binary angle makes a frame's turn exact, and the next turn the same as the first.
+    let turn = Turn::from_raw((frame % FRAMES * (65536 / FRAMES)) as u16);
+    let quarter = Turn::from_degrees(90);
+    let faces = |pose: Pose| pose.rotated_y(turn).rotated_x(Turn::from_degrees(12));
+    [
+        (&FLOOR, floor, &GRASS),
+        (&FACES, faces(Pose::IDENTITY.rotated_x(quarter)), &BRICKS[0]),
+        (&FACES, faces(Pose::IDENTITY), &BRICKS[1]),
+        (&FACES, faces(Pose::IDENTITY.rotated_y(quarter)), &BRICKS[2]),
+    ]
+}
+
+fn write(strip: &mut Strip<'_>) {
+    let Ok(_) = Text::new("fixel", Point::new(2, 6), CAPTION).draw(strip);
+}
+
 /// The scene, seen by a camera for a picture of some size.
 #[derive(Debug)]
 pub struct Scene {
@@ -96,20 +128,33 @@ impl Scene {
     pub fn draw(&self, frame: u32, strip: &mut Strip<'_>) {
         let Ok(()) = strip.clear(SKY);
         strip.clear_depth();
-        let floor = Pose::IDENTITY.scaled_lit(4.0).at(Vec3::lit(0.0, -1.5, 0.0));
-        self.camera.draw(&FLOOR, &floor, &Material::gouraud(), strip);
-        // The binary angle makes a frame's turn exact, and the next turn the same as the first.
-        let turn = Turn::from_raw((frame % FRAMES * (65536 / FRAMES)) as u16);
-        let quarter = Turn::from_degrees(90);
-        let faces = [Pose::IDENTITY.rotated_x(quarter), Pose::IDENTITY, Pose::IDENTITY.rotated_y(quarter)];
-        for (pose, texture) in faces.iter().zip(&TEXTURES) {
-            let pose = pose.rotated_y(turn).rotated_x(Turn::from_degrees(12));
-            self.camera.draw(&FACES, &pose, &Material::textured(texture), strip);
+        for (mesh, pose, material) in things(frame) {
+            self.camera.draw(mesh, &pose, material, strip);
         }
-        let Ok(_) = Text::new("fixel", Point::new(2, 6), CAPTION).draw(strip);
+        write(strip);
     }
 
-    /// Draws a whole frame, strip by strip from the top, hands each to `show`, and returns the checksum
+    /// Draws a whole frame from a list, which it fills first, in strips of as many rows as `strip` has; returns the checksum of
+    /// the RGB565 words.
+    ///
+    /// # Errors
+    ///
+    /// Never: the list has room for any frame.
+    pub fn listed(&self, frame: u32, list: &mut List, strip: &mut Strip<'_>) -> Result<u32, CapacityError> {
+        list.clear();
+        for (mesh, pose, material) in things(frame) {
+            self.camera.draw(mesh, &pose, material, list)?;
+        }
+        let mut sum = Rgb565Sum::new();
+        let Ok(()) = list.render_bands(self.size.height, &SKY, strip, |_, strip| {
+            write(strip);
+            sum.add(strip.pixels());
+            Ok::<_, Infallible>(())
+        });
+        Ok(sum.finish())
+    }
+
+    /// Draws a whole frame, strip by strip from the top, each from the meshes, hands each to `show`, and returns the checksum
     /// of the RGB565 words. The height of a strip is the number of rows that both slices hold.
     ///
     /// # Errors
@@ -172,7 +217,6 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::convert::Infallible;
 
     fn sum(size: Size, frame: u32, rows: u32) -> u32 {
         let count = (size.width * rows) as usize;
@@ -191,6 +235,25 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_list_shows_the_frame_that_is_drawn_at_once() {
+        let scene = Scene::new(MICROBIT);
+        let mut list = List::new();
+        let mut most = [0; 3];
+        for rows in [1, 7, 16, 128] {
+            let count = (MICROBIT.width * rows) as usize;
+            let (mut pixels, mut depth) = (vec![0; count], vec![0; count]);
+            let mut strip = Strip::new(Size::new(MICROBIT.width, rows), &mut pixels, &mut depth)
+                .expect("the slices hold the strip");
+            for frame in 0..FRAMES {
+                let listed = scene.listed(frame, &mut list, &mut strip);
+                assert_eq!(listed, Ok(sum(MICROBIT, frame, MICROBIT.height)), "{rows} rows, frame {frame}");
+                most = core::array::from_fn(|i| most[i].max(list.lengths()[i]));
+            }
+        }
+        println!("{most:?} vertices, triangles and draws at most, in {} bytes", List::bytes());
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The instructions that `bench`'s scenes take, against the table `counts.txt`: a change of speed is seen when it is made.
+//! The instructions that the scenes of `bench` and `bands` take, against the table `counts.txt`: a change of speed is seen when it is made.
 
 use std::{
     env,
@@ -18,12 +18,19 @@ const TOLERANCE_PERCENT: u64 = 2;
 const UPDATE: &str = "FIXEL_UPDATE_COUNTS=1 cargo test --test boards counts";
 
 /// The MPS2 boards run an instruction a nanosecond by `-icount`; the one with a Cortex-M3 runs Armv6-M code.
-const BOARDS: [Board; 2] =
-    [mps2("mps2-an385", "thumbv6m-none-eabi"), mps2("mps2-an386", "thumbv7em-none-eabihf")];
+const BOARDS: [[Board; 2]; 2] = [
+    [mps2("bench", "mps2-an385", "thumbv6m-none-eabi"), mps2("bands", "mps2-an385", "thumbv6m-none-eabi")],
+    [
+        mps2("bench", "mps2-an386", "thumbv7em-none-eabihf"),
+        mps2("bands", "mps2-an386", "thumbv7em-none-eabihf"),
+    ],
+];
+/// What the boards' code is made for: the table's columns.
+const TARGETS: [&str; BOARDS.len()] = [BOARDS[0][0].target, BOARDS[1][0].target];
 
-const fn mps2(machine: &'static str, target: &'static str) -> Board {
+const fn mps2(program: &'static str, machine: &'static str, target: &'static str) -> Board {
     let options = &["-icount", "shift=0"];
-    Board { machine, options, program: "bench", features: "mps2", target, ram: 4 << 20 }
+    Board { machine, options, program, features: "mps2", target, ram: 4 << 20 }
 }
 
 /// A scene with the pixels that it covers and its instructions on each board.
@@ -41,11 +48,11 @@ fn number(text: &str) -> u64 {
 /// What the boards print: `s1 pixels 12510 instructions 272080`.
 fn measured() -> Vec<Row> {
     let mut rows = Vec::<Row>::new();
-    for (i, board) in BOARDS.iter().enumerate() {
-        for (scene, line) in board.run().iter().enumerate() {
+    for (i, programs) in BOARDS.iter().enumerate() {
+        for (scene, line) in programs.iter().flat_map(Board::run).enumerate() {
             let words = line.split_whitespace().collect::<Vec<_>>();
             let [name, "pixels", pixels, "instructions", instructions] = *words else {
-                panic!("{}: {line:?} is not a scene's line", board.target);
+                panic!("{}: {line:?} is not a scene's line", TARGETS[i]);
             };
             if i == 0 {
                 rows.push(Row {
@@ -77,8 +84,8 @@ fn table(rows: &[Row]) -> String {
          scene      pixels",
         rustc_version()
     );
-    for board in BOARDS {
-        let _ = write!(table, "  {:>21}", board.target);
+    for target in TARGETS {
+        let _ = write!(table, "  {target:>21}");
     }
     for Row { scene, pixels, instructions } in rows {
         let _ = write!(table, "\n{scene:10} {pixels:6}");
@@ -92,7 +99,7 @@ fn table(rows: &[Row]) -> String {
 fn parsed(table: &str) -> Vec<Row> {
     let mut lines = table.lines().filter(|line| !line.starts_with('#'));
     let head = lines.next().expect("the table has a head").split_whitespace().collect::<Vec<_>>();
-    assert_eq!(head, ["scene", "pixels", BOARDS[0].target, BOARDS[1].target]);
+    assert_eq!(head, ["scene", "pixels", TARGETS[0], TARGETS[1]]);
     lines
         .map(|line| {
             let words = line.split_whitespace().collect::<Vec<_>>();
@@ -135,12 +142,12 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
         if old.is_none_or(|old| old.pixels != row.pixels) {
             wrong.push(format!("{} with {} px is not in the table", row.scene, row.pixels));
         }
-        for (i, board) in BOARDS.iter().enumerate() {
+        for (i, target) in TARGETS.iter().enumerate() {
             let count = row.instructions[i];
-            let _ = write!(report, "  {} {count:>9}", board.target);
+            let _ = write!(report, "  {target} {count:>9}");
             if let Some(old) = old.map(|old| old.instructions[i]) {
                 let _ = write!(report, " {:+6.2} %", (count as f64 / old as f64 - 1.0) * 100.0);
-                wrong.extend(judged(&row.scene, board.target, old, count));
+                wrong.extend(judged(&row.scene, target, old, count));
             }
         }
         report.push('\n');

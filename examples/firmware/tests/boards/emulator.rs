@@ -11,8 +11,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use object::{Object, ObjectSection, ObjectSymbol};
+
 /// A run takes a second; a hang must fail before anyone loses patience.
 const TIMEOUT: Duration = Duration::from_secs(120);
+
+/// Where a Cortex-M has its RAM.
+const RAM_START: usize = 0x2000_0000;
 
 pub(super) struct Board {
     /// QEMU's name of it.
@@ -24,7 +29,7 @@ pub(super) struct Board {
     /// The package's features that the program needs.
     pub(super) features: &'static str,
     pub(super) target: &'static str,
-    /// Bytes of RAM from 0x2000_0000.
+    /// Bytes of RAM from [`RAM_START`].
     pub(super) ram: usize,
 }
 
@@ -81,6 +86,29 @@ impl Board {
         directory.join(self.target).join("release").join(self.program)
     }
 
+    /// The program's variables in RAM by their names, with their bytes, as the linker placed them; and the bytes from the
+    /// first to the last, which with the stack is all the RAM that it uses.
+    pub(super) fn statics(&self) -> (Vec<(String, u64)>, u64) {
+        let elf = fs::read(self.build()).expect("the program was built");
+        let elf = object::File::parse(&*elf).expect("it is an ELF file");
+        let start = RAM_START as u64;
+        let is_ram = |address: u64| (start..start + self.ram as u64).contains(&address);
+        let variables = elf
+            .symbols()
+            .filter(|symbol| symbol.size() > 0 && is_ram(symbol.address()))
+            .map(|symbol| {
+                let name = symbol.name().expect("it is text");
+                (format!("{:#}", rustc_demangle::demangle(name)), symbol.size())
+            })
+            .collect();
+        let end = elf
+            .sections()
+            .filter(|section| section.size() > 0 && is_ram(section.address()))
+            .map(|section| section.address() + section.size())
+            .max();
+        (variables, end.unwrap_or(start) - start)
+    }
+
     pub(super) fn start(&self, argument: Option<&str>) -> Emulator {
         Emulator::start(self, &self.build(), argument)
     }
@@ -98,7 +126,7 @@ impl Board {
     pub(super) fn stack(&self, emulator: &mut Emulator) -> (usize, usize) {
         let file = format!("{}.ram", self.program);
         emulator.execute(&format!(
-            r#"{{"execute":"memsave","arguments":{{"val":536870912,"size":{},"filename":"{file}"}}}}"#,
+            r#"{{"execute":"memsave","arguments":{{"val":{RAM_START},"size":{},"filename":"{file}"}}}}"#,
             self.ram
         ));
         let ram = fs::read(scratch().join(file)).expect("QEMU wrote the RAM");

@@ -6,6 +6,7 @@
 //! Needs QEMU and rustup's targets thumbv6m-none-eabi, thumbv7m-none-eabi and thumbv7em-none-eabihf, and fails without;
 //! `FIXEL_SKIP_BOARDS=1` skips it.
 
+mod bands;
 mod counts;
 mod emulator;
 
@@ -154,6 +155,7 @@ fn the_microbit_program_prints_the_desktops_checksums() {
         assert_eq!(emulator.read_line(), Some(line));
     }
     let (used, size) = MICROBIT_BOARD.stack(&mut emulator);
-    println!("microbit: {used} bytes of a stack of {size} used");
+    let (_, statics) = MICROBIT_BOARD.statics();
+    println!("microbit: {statics} bytes of statics, {used} of a stack of {size} used");
     assert!(used + 1024 <= size);
 }

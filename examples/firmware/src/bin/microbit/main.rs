@@ -1,4 +1,5 @@
-//! The cube in the micro:bit's 16 KiB of RAM, on a Cortex-M0, which has no divide and no long multiply.
+//! The cube on a picture of 128×128, twice as large as the micro:bit's 16 KiB of RAM: from a list, in bands. On a
+//! Cortex-M0, which has no divide and no long multiply.
 //!
 //! Prints one line a frame, `frame N rgb565 XXXXXXXX`, through semihosting, and exits after a full turn;
 //! with the argument `hold` (QEMU's `-semihosting-config …,arg=microbit,arg=hold`) it never exits.
@@ -12,19 +13,20 @@ compile_error!(
     "`microbit` runs on the microbit board: build it with --bin microbit --target thumbv6m-none-eabi"
 );
 
-use core::convert::Infallible;
+use embedded_graphics::prelude::*;
+use fixel_firmware::scene::{BAND_ROWS, FRAMES, List, MICROBIT, Scene, Strip};
 
-use fixel_firmware::scene::{BAND_ROWS, FRAMES, MICROBIT, Scene};
-
-/// Pixels that are drawn at a time.
-const STRIP: usize = MICROBIT.width as usize * BAND_ROWS;
+/// What is drawn at a time.
+const STRIP: Size = Size::new(MICROBIT.width, BAND_ROWS as u32);
+const PIXELS: usize = MICROBIT.width as usize * BAND_ROWS;
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
     // `entry` hands these out as `&mut`: it runs once.
-    static mut PIXELS: [u16; STRIP] = [0; STRIP];
-    static mut DEPTH: [u16; STRIP] = [0; STRIP];
+    static mut COLORS: [u16; PIXELS] = [0; PIXELS];
+    static mut DEPTH: [u16; PIXELS] = [0; PIXELS];
+    static mut LIST: List = List::new();
 
     use semihosting::{experimental::env, println, process};
 
@@ -32,8 +34,9 @@ fn main() -> ! {
     let hold = (&arguments).into_iter().any(|argument| argument == Ok("hold"));
 
     let scene = Scene::new(MICROBIT);
+    let mut strip = Strip::new(STRIP, COLORS, DEPTH).expect("the buffers hold it");
     for frame in 0..FRAMES {
-        let Ok(rgb565) = scene.frame(frame, PIXELS, DEPTH, |_| Ok::<_, Infallible>(()));
+        let rgb565 = scene.listed(frame, LIST, &mut strip).expect("the list holds the scene");
         println!("frame {frame} rgb565 {rgb565:08X}");
     }
     if hold {
@@ -46,10 +49,12 @@ fn main() -> ! {
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    let (mut pixels, mut depth) = ([0; STRIP], [0; STRIP]);
+    let (mut pixels, mut depth) = ([0; PIXELS], [0; PIXELS]);
+    let mut list = List::new();
     let scene = Scene::new(MICROBIT);
+    let mut strip = Strip::new(STRIP, &mut pixels, &mut depth).expect("the buffers hold it");
     for frame in 0..FRAMES {
-        let Ok(rgb565) = scene.frame(frame, &mut pixels, &mut depth, |_| Ok::<_, Infallible>(()));
+        let rgb565 = scene.listed(frame, &mut list, &mut strip).expect("the list holds the scene");
         println!("frame {frame} rgb565 {rgb565:08X}");
     }
 }
