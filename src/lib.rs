@@ -99,8 +99,9 @@ pub use pipeline::{
     Stats, Varying, draw_triangle,
 };
 pub use scene::{
-    Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,
-    TextureError, Textured, Vertex, Wrap, shapes, texels,
+    Camera, CornersError, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal,
+    PerspectiveImage, Projected, ShadedTriangle, Texture, TextureError, Textured, Vertex, Wrap, shapes,
+    texels,
 };
 pub use target::{Band, BigEndian, Depth16, DepthFormat, NoDepth, PixelFormat, TargetError};
 
