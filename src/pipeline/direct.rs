@@ -20,7 +20,7 @@ use super::shade::Shader;
 use super::span::{Rows, Span, Window};
 use super::transform::ToClip;
 use crate::math::Pose;
-use crate::num::I12F4;
+use crate::num::{I4F12, I12F4};
 use crate::scene::{Mesh, Projection, Textured, Vertex, Viewport};
 use crate::target::{NoDepth, PixelFormat};
 use core::ops::Range;
@@ -105,64 +105,87 @@ fn within(start: i32, length: u32) -> Range<i32> {
 }
 
 /// The colours of what is seen of a row.
-struct Colors<'a, F: PixelFormat, S> {
-    shader: &'a S,
-    run: &'a mut [F::Word],
+///
+/// What `next` needs for most pixels stays in registers where a display's loop has it inlined: so nothing takes a reference to
+/// all of this.
+struct Colors<'a, F: PixelFormat, S, const RUN: usize> {
+    run: &'a mut [F::Word; RUN],
     /// Which of the run are still to be handed on.
-    ready: Range<usize>,
-    /// What follows the run.
+    at: usize,
+    ready: usize,
+    /// What follows the run, up to the end of the row.
     span: Span<'a>,
-    /// Where the row ends, and where what is seen of it does.
     end: i32,
+    /// The end of what is seen.
     seen_end: i32,
+    shader: &'a S,
 }
 
-impl<'a, F: PixelFormat, S: Shader<F>> Colors<'a, F, S> {
-    fn new(shader: &'a S, run: &'a mut [F::Word], mut span: Span<'a>, end: i32, seen: Range<i32>) -> Self {
-        while span.x() + run.len() as i32 <= seen.start {
-            span = span.ahead(run.len());
+impl<'a, F: PixelFormat, S: Shader<F>, const RUN: usize> Colors<'a, F, S, RUN> {
+    #[inline]
+    fn new(
+        shader: &'a S,
+        run: &'a mut [F::Word; RUN],
+        mut span: Span<'a>,
+        end: i32,
+        seen: Range<i32>,
+    ) -> Self {
+        while span.x() + RUN as i32 <= seen.start {
+            span = span.ahead(RUN);
         }
         let skipped = (seen.start - span.x()) as usize;
-        let mut colors = Self { shader, run, ready: 0..0, span, end, seen_end: seen.end };
+        let mut colors = Self { run, at: 0, ready: 0, span, end, seen_end: seen.end, shader };
         if skipped > 0 {
             colors.shade();
-            colors.ready.start = skipped;
+            colors.at = skipped;
         }
         colors
     }
 
-    /// Shades the next run, if any of it is seen. Not inlined: displays have loops of their own around `next`.
-    #[inline(never)]
+    /// The next run, some of which is seen.
+    #[inline]
     fn shade(&mut self) {
         let x = self.span.x();
-        let count = self.run.len().min((self.end - x) as usize);
-        if let Some(pixels) = self.run.get_mut(..count) {
-            self.shader.span(&self.span, pixels);
-        }
-        self.ready = 0..count.min((self.seen_end - x) as usize);
+        let count = RUN.min((self.end - x) as usize);
+        let span = self.span;
+        shade(self.shader, &span, count, self.run);
+        (self.at, self.ready) = (0, count.min((self.seen_end - x) as usize));
         self.span = self.span.ahead(count);
     }
 }
 
-impl<F: PixelFormat, S: Shader<F>> Iterator for Colors<'_, F, S> {
+/// Not inlined: displays have loops of their own around `next`.
+#[inline(never)]
+fn shade<F: PixelFormat, S: Shader<F>, const RUN: usize>(
+    shader: &S,
+    span: &Span<'_>,
+    count: usize,
+    run: &mut [F::Word; RUN],
+) {
+    if let Some(pixels) = run.get_mut(..count) {
+        shader.span(span, pixels);
+    }
+}
+
+impl<F: PixelFormat, S: Shader<F>, const RUN: usize> Iterator for Colors<'_, F, S, RUN> {
     type Item = F::Color;
 
     #[inline]
     fn next(&mut self) -> Option<F::Color> {
-        if self.ready.is_empty() {
+        if self.at == self.ready {
             if self.span.x() >= self.seen_end {
                 return None;
             }
             self.shade();
         }
-        let word = self.run.get(self.ready.start)?;
-        self.ready.start += 1;
-        Some(F::decode(*word))
+        let word = *self.run.get(self.at)?;
+        self.at += 1;
+        Some(F::decode(word))
     }
 
     #[inline]
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.ready.len() + (self.seen_end - self.span.x()).max(0) as usize;
+        let left = self.ready - self.at + (self.seen_end - self.span.x()).max(0) as usize;
         (left, Some(left))
     }
 }
@@ -179,115 +202,118 @@ pub(crate) struct Side<'a> {
     pub(crate) cull: Cull,
 }
 
-impl<F, T, const RUN: usize> Direct<'_, F, T, RUN>
-where
-    F: PixelFormat,
-    T: DrawTarget<Color = F::Color>,
-{
-    /// Draws the sides of a quad that is on the screen.
-    pub(crate) fn draw_quad<'s>(
-        &mut self,
-        mut corners: [ScreenVertex; 4],
-        sides: impl Iterator<Item = Side<'s>>,
-    ) -> Result<(), T::Error> {
-        for side in sides {
-            side.texture_corners(&mut corners);
-            for half in HALVES {
-                self.draw(half.map(|i| &corners[i]), side.cull, false, &side.shader)?;
-            }
-        }
-        Ok(())
+/// Four corners on the screen, counter-clockwise from a picture's top left.
+pub(crate) struct Quad {
+    corners: [ScreenVertex; 4],
+    posed: Option<Posed>,
+}
+
+/// Where the corners come from, and which of them are of no use because clipping cuts them off.
+struct Posed {
+    vertices: [Vertex; 4],
+    are_cut_off: [bool; 4],
+    to_clip: ToClip,
+    clip: Clip,
+    viewport: Viewport,
+    is_orthographic: bool,
+}
+
+impl Quad {
+    pub(crate) fn on_screen(corners: [ScreenVertex; 4]) -> Self {
+        Self { corners, posed: None }
     }
 
-    /// Draws the sides of a quad of mesh space (four vertices in a plane) in a pose before a camera.
-    pub(crate) fn draw_posed<'s>(
-        &mut self,
+    /// A rectangle around a pose's origin, half as wide and high, before a camera; `None` if it is out of sight.
+    ///
+    /// Not inlined: what it takes is not on the stack while pixels are drawn.
+    #[inline(never)]
+    pub(crate) fn posed(
         projection: &Projection,
         camera: &Pose,
         pose: &Pose,
-        mut quad: [Vertex; 4],
-        sides: impl Iterator<Item = Side<'s>>,
-    ) -> Result<(), T::Error> {
-        let Some(placer) = Placer::new(projection, camera, pose, &quad) else {
-            return Ok(());
-        };
-        let mut corners = [ScreenVertex::default(); 4];
-        let mut are_placed = [false; 4];
-        for i in 0..4 {
-            are_placed[i] = placer.place(&quad[i], &mut corners[i]);
+        [right, top]: [I4F12; 2],
+    ) -> Option<Self> {
+        let corner = |x, y| Vertex { position: [x, y, I4F12::ZERO], ..Default::default() };
+        // At most 7.9998, which has a negative.
+        let vertices = [corner(-right, top), corner(-right, -top), corner(right, -top), corner(right, top)];
+        let to_clip = ToClip::new(projection, camera, pose);
+        let clip = Clip::new(projection, to_clip.unit_bits());
+        let bounds = Mesh::try_new(&vertices, &[]).ok().map(|mesh| *mesh.bounds())?;
+        if !clip.sees(&to_clip, &bounds, projection) {
+            return None;
         }
-        for side in sides {
-            side.texture_corners(&mut corners);
+        let (mut corners, mut are_cut_off) = ([ScreenVertex::default(); 4], [false; 4]);
+        for i in 0..4 {
+            are_cut_off[i] = !clip.place(&to_clip, &Coloring::default(), &vertices[i], &mut corners[i]);
+        }
+        let (viewport, is_orthographic) = (projection.viewport, projection.orthographic);
+        let posed = Posed { vertices, are_cut_off, to_clip, clip, viewport, is_orthographic };
+        Some(Self { corners, posed: Some(posed) })
+    }
+
+    /// Draws the sides, up to the first error of the display.
+    #[inline(never)]
+    pub(crate) fn draw<'s, F, T, const RUN: usize>(
+        &mut self,
+        target: &mut T,
+        sides: impl Fn(bool) -> Option<Side<'s>>,
+    ) -> Result<(), T::Error>
+    where
+        F: PixelFormat,
+        T: DrawTarget<Color = F::Color>,
+    {
+        let posed = self.posed.as_ref();
+        let mut direct = Direct::<F, T, RUN>::new(target, posed.map(|posed| &posed.viewport));
+        let is_orthographic = posed.is_some_and(|posed| posed.is_orthographic);
+        for side in [false, true].into_iter().filter_map(sides) {
+            for (corner, [u, v]) in self.corners.iter_mut().zip(side.uv) {
+                (corner.u, corner.v) = (u.into(), v.into());
+            }
             for half in HALVES {
-                if half.iter().all(|&i| are_placed[i]) {
-                    self.draw(half.map(|i| &corners[i]), side.cull, projection.orthographic, &side.shader)?;
-                } else {
-                    for (vertex, uv) in quad.iter_mut().zip(side.uv) {
-                        vertex.uv = uv;
+                match posed {
+                    Some(posed) if half.iter().any(|&i| posed.are_cut_off[i]) => {
+                        posed.draw_cut(half, &side, &mut direct)?;
                     }
-                    self.draw_cut(&placer, half.map(|i| &quad[i]), &side, projection.orthographic)?;
+                    _ => {
+                        let corners = half.map(|i| &self.corners[i]);
+                        direct.draw(corners, side.cull, is_orthographic, &side.shader)?;
+                    }
                 }
             }
         }
         Ok(())
     }
+}
 
+impl Posed {
     /// Draws the pieces of a triangle that crosses a plane or leaves the guard band.
     #[cold]
     #[inline(never)]
-    fn draw_cut(
-        &mut self,
-        placer: &Placer,
-        triangle: [&Vertex; 3],
+    fn draw_cut<F, T, const RUN: usize>(
+        &self,
+        half: [usize; 3],
         side: &Side<'_>,
-        is_orthographic: bool,
-    ) -> Result<(), T::Error> {
+        direct: &mut Direct<'_, F, T, RUN>,
+    ) -> Result<(), T::Error>
+    where
+        F: PixelFormat,
+        T: DrawTarget<Color = F::Color>,
+    {
         let mut corners = [ScreenVertex::default(); MOST_CORNERS];
-        let count = placer.cut(triangle, &mut corners);
+        let count = self.cut(half, side, &mut corners);
         let [first, rest @ ..] = &corners;
         for pair in rest.windows(2).take(count.saturating_sub(2)) {
             if let [second, third] = pair {
-                self.draw([first, second, third], side.cull, is_orthographic, &side.shader)?;
+                direct.draw([first, second, third], side.cull, self.is_orthographic, &side.shader)?;
             }
         }
         Ok(())
     }
-}
-
-impl Side<'_> {
-    fn texture_corners(&self, corners: &mut [ScreenVertex; 4]) {
-        for (corner, [u, v]) in corners.iter_mut().zip(self.uv) {
-            (corner.u, corner.v) = (u.into(), v.into());
-        }
-    }
-}
-
-/// The stages before set-up. Their temporaries are not on the stack while pixels are drawn: that is why its functions are not
-/// inlined.
-struct Placer {
-    to_clip: ToClip,
-    clip: Clip,
-}
-
-impl Placer {
-    /// `None` if the quad is out of sight.
-    #[inline(never)]
-    fn new(projection: &Projection, camera: &Pose, pose: &Pose, quad: &[Vertex; 4]) -> Option<Self> {
-        let to_clip = ToClip::new(projection, camera, pose);
-        let clip = Clip::new(projection, to_clip.unit_bits());
-        let mesh = Mesh::try_new(quad, &[]).ok()?;
-        clip.sees(&to_clip, mesh.bounds(), projection).then_some(Self { to_clip, clip })
-    }
-
-    /// False for a vertex that has to be cut off.
-    #[inline(never)]
-    fn place(&self, vertex: &Vertex, to: &mut ScreenVertex) -> bool {
-        self.clip.place(&self.to_clip, &Coloring::default(), vertex, to)
-    }
 
     /// How many corners what is left of a triangle has.
     #[inline(never)]
-    fn cut(&self, triangle: [&Vertex; 3], to: &mut [ScreenVertex; MOST_CORNERS]) -> usize {
-        self.clip.cut(&self.to_clip, &Coloring::default(), triangle, to).unwrap_or(0)
+    fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> usize {
+        let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
+        self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to).unwrap_or(0)
     }
 }

@@ -24,7 +24,7 @@ mod walk;
 pub use clip::ScreenVertex;
 pub use color::Coloring;
 pub(crate) use colors::{Colors, Gray, LitTexels, RedBlueGreen, color, lit};
-pub(crate) use direct::{Direct, Side};
+pub(crate) use direct::{Direct, Quad, Side};
 pub use draw::{RangeError, draw_triangle};
 pub(crate) use draw::{draw, project};
 pub(crate) use fill::Texels;

@@ -1,9 +1,9 @@
 //! What draws itself: pictures in perspective and single triangles, for any display and without a buffer.
 
-use super::{Camera, Projection, Texture, Textured, Vertex};
+use super::{Camera, Projection, Texture, Textured};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4, I16F16, U1F31};
-use crate::pipeline::{Cull, Direct, RangeError, ScreenVertex, Shader, Side};
+use crate::pipeline::{Cull, Direct, Quad, RangeError, ScreenVertex, Shader, Side};
 use crate::target::PixelFormat;
 use core::fmt;
 use core::marker::PhantomData;
@@ -235,13 +235,13 @@ impl<'a, F, const RUN: usize> PerspectiveImage<'a, F, RUN> {
         PerspectiveImage { place, front, back, format }
     }
 
-    fn sides(&self) -> impl Iterator<Item = Side<'a>> {
-        let back = match &self.back {
+    fn side(&self, is_back: bool) -> Option<Side<'a>> {
+        match &self.back {
+            _ if !is_back => Some(self.front.side(Cull::Back, false)),
             Back::Hidden => None,
             Back::Transparent => Some(self.front.side(Cull::Front, false)),
             Back::Picture(picture) => Some(picture.side(Cull::Front, true)),
-        };
-        [Some(self.front.side(Cull::Back, false)), back].into_iter().flatten()
+        }
     }
 }
 
@@ -250,23 +250,13 @@ impl<F: PixelFormat, const RUN: usize> Drawable for PerspectiveImage<'_, F, RUN>
     type Output = ();
 
     fn draw<D: DrawTarget<Color = F::Color>>(&self, target: &mut D) -> Result<(), D::Error> {
-        match &self.place {
-            Place::OnScreen(corners) => {
-                Direct::<F, D, RUN>::new(target, None).draw_quad(*corners, self.sides())
-            }
-            Place::Posed { projection, camera, pose, half: [right, top] } => {
-                let corner = |x, y| Vertex { position: [x, y, I4F12::ZERO], ..Default::default() };
-                // −7.9998 is there too.
-                let quad =
-                    [corner(-right, *top), corner(-right, -top), corner(*right, -top), corner(*right, *top)];
-                Direct::<F, D, RUN>::new(target, Some(&projection.viewport)).draw_posed(
-                    projection,
-                    camera,
-                    pose,
-                    quad,
-                    self.sides(),
-                )
-            }
+        let quad = match &self.place {
+            Place::OnScreen(corners) => Some(Quad::on_screen(*corners)),
+            Place::Posed { projection, camera, pose, half } => Quad::posed(projection, camera, pose, *half),
+        };
+        match quad {
+            Some(mut quad) => quad.draw::<F, D, RUN>(target, |is_back| self.side(is_back)),
+            None => Ok(()),
         }
     }
 }
