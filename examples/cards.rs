@@ -172,7 +172,8 @@ fn pose(i: i32, time: u16) -> Pose {
     let late = u32::from(time).saturating_sub(0x1000 * i as u32);
     let turned = eased(late) + eased(late.saturating_sub(0x8000));
     let sway = Turn::from_raw(time.wrapping_mul(2).wrapping_add(i as u16 * 0x5000));
-    let tilt = |size: i32, turn: Turn| Turn::from_raw((i32::from(turn.sin().to_bits()) * size >> 14) as u16);
+    let tilt =
+        |size: i32, turn: Turn| Turn::from_raw(((i32::from(turn.sin().to_bits()) * size) >> 14) as u16);
     // The camera is 4 away and has a pixel a 1/80.
     let place = Vec3::new(
         I16F16::from_num(PLACES[i as usize]) / 80,

@@ -6,7 +6,7 @@ mod common;
 mod reference;
 
 use common::generate::{Family, GUARD_BAND, place, places, triangle};
-use common::{Strip, cases, for_all, perspective, screen_vertex};
+use common::{Strip, for_all, perspective, screen_vertex};
 use fixel::embedded_graphics::mock_display::MockDisplay;
 use fixel::embedded_graphics::pixelcolor::raw::RawU32;
 use fixel::embedded_graphics::pixelcolor::{IntoStorage, PixelColor, Rgb565};
@@ -469,7 +469,7 @@ fn a_posed_picture_is_its_mesh_in_a_band_also_clipped_1000_cases() {
         same(&screen.pixels, &expected)
     });
     println!("direct: {} seen, {} of them clipped", seen.get(), clipped.get());
-    assert!(seen.get() > cases(1000) / 3 && clipped.get() > cases(1000) / 20);
+    assert!(seen.get() > common::cases(1000) / 3 && clipped.get() > common::cases(1000) / 20);
 }
 
 /// A card around the middle of the mock display, turned about its vertical axis.
@@ -559,7 +559,7 @@ fn a_picture_between_four_points_lies_in_the_plane_that_looks_so_500_cases() {
     });
     println!("direct: at most {} texels off at {} pixels", worst.get(), all.get());
     // Where texels meet.
-    assert!(worst.get() <= 1 && all.get() > cases(500) * 1000);
+    assert!(worst.get() <= 1 && all.get() > common::cases(500) * 1000);
 }
 
 #[test]

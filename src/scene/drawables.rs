@@ -56,8 +56,8 @@ use embedded_graphics::primitives::Rectangle;
 /// # Cost
 ///
 /// On a Cortex-M0+ a pixel takes 15 cycles more than in a [`Band`](crate::Band) (see [`cost`](crate::cost)), a row of a triangle
-/// 85 more, and then what the display does with them, for which each row is a window. Together with the picture's own
-/// 0.2 KiB drawing takes 1.7 KiB of stack, of which a run of 64 words is 128 bytes; nothing is kept between two calls.
+/// 85 more, and then what the display does with them, for which each row is a window. Drawing takes up to 2 KiB of stack, the
+/// picture itself and a run of 64 words (128 bytes) included; nothing is kept between two calls.
 #[derive(Clone, Copy, Debug)]
 pub struct PerspectiveImage<'a, F = Rgb565, const RUN: usize = 64> {
     place: Place,
