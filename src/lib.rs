@@ -74,6 +74,8 @@
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.
+//!
+//! [`PerspectiveImage`] and [`ShadedTriangle`] need no band: they hand their rows straight to a display.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(unreachable_pub)]
