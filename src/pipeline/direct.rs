@@ -26,6 +26,7 @@ use crate::target::{NoDepth, PixelFormat};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
+use embedded_graphics::pixelcolor::Rgb565;
 use embedded_graphics::primitives::Rectangle;
 
 /// Columns and rows that a triangle within the guard band may cover.
@@ -42,6 +43,8 @@ pub(crate) struct Direct<'a, F: PixelFormat, T, const RUN: usize> {
     setup: TriangleSetup,
     rows: Rows,
 }
+
+const _: () = assert!(size_of::<Direct<'_, Rgb565, (), 64>>() <= 544);
 
 impl<'a, F, T, const RUN: usize> Direct<'a, F, T, RUN>
 where

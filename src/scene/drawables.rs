@@ -48,7 +48,8 @@ use embedded_graphics::primitives::Rectangle;
 /// Coverage is that of [`draw_triangle`](crate::draw_triangle). Columns and rows from −1024 to 1022 are drawn, as far as the
 /// target's bounding box has them, which need not begin at (0, 0): `clipped`, `cropped` and `translated` targets do.
 ///
-/// The colours are the same whatever part of the screen the target shows. They are those of two triangles in a
+/// The colours are the same whatever part of the screen the target shows (if it begins left of column 0 there are columns
+/// left of it, and rows begin there; else they begin at column 0). They are those of two triangles in a
 /// [`Band`](crate::Band) of 1023 columns without depth, byte for byte, in rows of at most [`run`](Self::run) pixels; in longer
 /// ones perspective begins anew after every run, as exact (¼ pixel), though not always with the same last bits. From
 /// [`posed`](Self::posed) the same goes for every band as wide as the camera's picture.
