@@ -108,6 +108,8 @@
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.
+//!
+//! [`PerspectiveImage`] and [`ShadedTriangle`] need no band: they hand their rows straight to a display.
 #![no_std]
 #![forbid(unsafe_code)]
 #![warn(unreachable_pub)]
@@ -133,8 +135,9 @@ pub use pipeline::{
     Stats, Varying, draw_triangle,
 };
 pub use scene::{
-    Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,
-    TextureError, Textured, Vertex, Wrap, shapes, texels,
+    Camera, CornersError, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal,
+    PerspectiveImage, Projected, ShadedTriangle, Texture, TextureError, Textured, Vertex, Wrap, shapes,
+    texels,
 };
 pub use target::{
     Background, Band, BigEndian, Canvas, CapacityError, Changes, Depth16, DepthFormat, DisplayList, Flushed,

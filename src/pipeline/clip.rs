@@ -49,7 +49,7 @@ const CUT: RangeInclusive<i32> = -1023 * 16..=1022 * 16;
 const MAX_TEXELS: i32 = 8192 << 16;
 
 impl ScreenVertex {
-    pub(super) fn in_range(&self) -> bool {
+    pub(crate) fn in_range(&self) -> bool {
         [self.x, self.y].iter().all(|at| GUARD_BAND.contains(&i32::from(at.to_bits())))
             && [self.u, self.v].iter().all(|t| (-MAX_TEXELS..=MAX_TEXELS).contains(&t.to_bits()))
     }

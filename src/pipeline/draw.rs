@@ -248,7 +248,10 @@ where
     Ok(())
 }
 
-fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, is_orthographic: bool) -> Needs {
+pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
+    shader: &S,
+    is_orthographic: bool,
+) -> Needs {
     Needs {
         inputs: shader.inputs(),
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },

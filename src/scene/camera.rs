@@ -179,6 +179,10 @@ impl Camera {
         self
     }
 
+    pub(crate) const fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
     /// Where the camera stands and how it is turned.
     #[must_use]
     pub const fn placement(&self) -> &Pose {

@@ -1,6 +1,7 @@
 //! What a user describes: meshes, textures, materials, a camera.
 
 mod camera;
+mod drawables;
 mod light;
 mod material;
 mod mesh;
@@ -9,6 +10,7 @@ pub mod shapes;
 mod texture;
 
 pub use camera::{Camera, Projected};
+pub use drawables::{CornersError, PerspectiveImage, ShadedTriangle};
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub use material::{Material, Textured};
 pub(crate) use mesh::Bounds;
