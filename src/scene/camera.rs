@@ -272,10 +272,6 @@ impl Camera {
     {
         canvas.draw_mesh(self, mesh, pose, shader, stats)
     }
-
-    pub(crate) const fn projection(&self) -> &Projection {
-        &self.projection
-    }
 }
 
 /// The point of the world at a place in the space of an eye (within ±2⁴⁶, I16F16), saturated at the world's ends.
