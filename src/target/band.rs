@@ -46,7 +46,7 @@ const MAX_SIDE: u32 = 1023;
 impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// A band of `size` pixels in the first width × height words of the two slices.
     ///
-    /// [`NoDepth`](super::NoDepth) takes a slice of `()`, of no bytes: `&mut [(); N]`.
+    /// [`NoDepth`](super::NoDepth) takes any slice of `()`: `&mut []`.
     ///
     /// # Errors
     ///
@@ -59,6 +59,8 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         let found = pixels.len();
         let pixels = pixels.get_mut(..needed).ok_or(TargetError::Pixels { needed, found })?;
         let found = depth.len();
+        // Depth that is never tested is never looked at.
+        let needed = if D::ALWAYS_PASSES { needed.min(found) } else { needed };
         let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
         Ok(Self { pixels, depth, width: size.width as u16, height: size.height as u16, top: 0 })
     }
@@ -146,6 +148,41 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         }
         let size = Size::new(self.width.into(), rows);
         Some(Band::new(size, self.pixels, self.depth).ok()?.starting_at(top))
+    }
+
+    /// Gives the pixels that were drawn for others to draw into, which hold at least as many words: a DMA channel sends these
+    /// while the band is drawn anew. What becomes of the depth, see [`Band::clear_to`].
+    ///
+    /// A band of static memory gives and takes `&'static mut [u16]`, which a DMA channel may own until it is done; cast to bytes,
+    /// in [`BigEndian`](super::BigEndian) order, they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
+    /// A channel that wants words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
+    ///
+    /// ```
+    /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+    /// use fixel::{Band, BigEndian, NoDepth};
+    /// # let memory = || &mut *Box::leak(Box::new([0; 240 * 16]));
+    /// # let (one, other) = (memory(), memory());
+    /// let mut free: &'static mut [u16] = other; // from a `StaticCell`, say, as is `one`
+    /// let mut band = Band::<BigEndian<Rgb565>, NoDepth>::new(Size::new(240, 16), one, &mut [])?;
+    /// let Ok(()) = band.clear(Rgb565::RED);
+    /// band.swap_pixels(&mut free)?;
+    /// let bytes: &'static mut [u8] = bytemuck::must_cast_slice_mut(free); // for the channel
+    /// assert_eq!(bytes[..4], [0xf8, 0x00, 0xf8, 0x00]);
+    /// # Ok::<(), fixel::TargetError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Pixels`] if there are too few words; nothing has changed then.
+    pub fn swap_pixels(&mut self, pixels: &mut &'a mut [F::Word]) -> Result<(), TargetError> {
+        let (needed, found) = (self.pixels.len(), pixels.len());
+        if found < needed {
+            return Err(TargetError::Pixels { needed, found });
+        }
+        // What is beyond the band's size is forgotten.
+        let (others, _) = core::mem::take(pixels).split_at_mut(needed);
+        *pixels = core::mem::replace(&mut self.pixels, others);
+        Ok(())
     }
 
     /// The memory, for the next use: the pixels of a static band go to a DMA channel as they came.
