@@ -17,7 +17,8 @@ use embedded_graphics::primitives::Rectangle;
 /// A strip of rows of a screen, or the whole screen, in memory that the user owns.
 ///
 /// It is an embedded-graphics [`DrawTarget`] in the coordinates of the whole screen: what lies
-/// outside its rows is left out. Its contents are as they were given: clear them first.
+/// outside its rows is left out. Its contents are as they were given: clear them first. To send
+/// one band by DMA while another is drawn, see [`Band::swap_pixels`].
 ///
 /// ```
 /// use fixel::{Band, Depth16};
@@ -94,7 +95,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.pixels
     }
 
-    /// The depths, row after row.
+    /// The depths, row after row; without depth what [`Band::new`] was given.
     #[must_use]
     pub fn depth(&self) -> &[D::Word] {
         self.depth
@@ -150,12 +151,12 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         Some(Band::new(size, self.pixels, self.depth).ok()?.starting_at(top))
     }
 
-    /// Gives the pixels that were drawn for others to draw into, which hold at least as many words: a DMA channel sends these
-    /// while the band is drawn anew. What becomes of the depth, see [`Band::clear_to`].
+    /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
+    /// anew. The depth stays; [`Band::clear_to`] clears it.
     ///
-    /// A band of static memory gives and takes `&'static mut [u16]`, which a DMA channel may own until it is done; cast to bytes,
-    /// in [`BigEndian`](super::BigEndian) order, they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
-    /// A channel that wants words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
+    /// A band of static memory gives and takes `&'static mut [u16]`, which a channel may own until it is done. As bytes in
+    /// [`BigEndian`](super::BigEndian) order they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
+    /// A channel that moves words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
     ///
     /// ```
     /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
@@ -173,13 +174,13 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     ///
     /// # Errors
     ///
-    /// [`TargetError::Pixels`] if there are too few words; nothing has changed then.
+    /// [`TargetError::Pixels`] if there are fewer words than the band has pixels; nothing has changed then. Of more the band
+    /// keeps, and later gives away, only as many.
     pub fn swap_pixels(&mut self, pixels: &mut &'a mut [F::Word]) -> Result<(), TargetError> {
         let (needed, found) = (self.pixels.len(), pixels.len());
         if found < needed {
             return Err(TargetError::Pixels { needed, found });
         }
-        // What is beyond the band's size is forgotten.
         let (others, _) = core::mem::take(pixels).split_at_mut(needed);
         *pixels = core::mem::replace(&mut self.pixels, others);
         Ok(())
