@@ -3,21 +3,22 @@
 //!
 //! Time is virtual: a bus takes so many cycles a byte, and drawing what [`CLEAR`], [`ROW`] and [`PIXEL`] say of what is counted.
 
+#[path = "common/bus.rs"]
+mod bus;
 mod common;
 mod reference;
 
 use std::cell::Cell;
-use std::ops::Deref;
-use std::rc::Rc;
+use std::convert::Infallible;
 
+use bus::{Bus, Channel, Clock, bytes, memory, words};
 use common::for_all;
 use common::scenes::{Draw, MATERIALS, materials, meshes, scene};
-use embedded_dma::ReadBuffer;
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::{
-    Band, BigEndian, Camera, Coloring, Cull, Depth16, DisplayList, Inputs, Material, Mesh, NoDepth, Pose,
-    QuarterPixel, Shader, Span, TargetError, Texture, Turn, Varying, Vec3, Vertex,
+    Background, Band, BigEndian, Camera, Changes, Coloring, Cull, Depth16, DisplayList, Inputs, Material,
+    Mesh, NoDepth, Pose, QuarterPixel, Shader, Span, TargetError, Texture, Turn, Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 
@@ -27,24 +28,6 @@ const CLEAR: u64 = 3;
 const ROW: u64 = 865;
 /// … and each of its pixels.
 const PIXEL: u64 = 31;
-
-/// Virtual time, in cycles. The bus, the shaders and who draws share it.
-#[derive(Clone, Debug, Default)]
-struct Clock(Rc<Cell<u64>>);
-
-impl Clock {
-    fn now(&self) -> u64 {
-        self.0.get()
-    }
-
-    fn pass(&self, cycles: u64) {
-        self.0.set(self.0.get() + cycles);
-    }
-
-    fn wait_until(&self, time: u64) {
-        self.0.set(self.0.get().max(time));
-    }
-}
 
 /// A material whose rows and pixels take their time.
 #[derive(Debug)]
@@ -85,51 +68,6 @@ impl Shader<BigEndian<Rgb565>> for Timed {
 type List<'a> = DisplayList<'a, 2000, 1000, 16, Timed, BigEndian<Rgb565>>;
 type TimedBand = Band<'static, BigEndian<Rgb565>, Depth16>;
 
-/// A bus with a DMA channel, and the display behind it.
-#[derive(Debug)]
-struct Bus {
-    clock: Clock,
-    cycles_a_byte: u64,
-    /// What the display was sent.
-    shown: Vec<u8>,
-}
-
-/// Memory on its way, which the channel owns meanwhile, as HALs have it: nobody else can write to it.
-#[derive(Debug)]
-struct Transfer<B> {
-    bus: Bus,
-    buffer: B,
-    end: u64,
-}
-
-impl Bus {
-    fn send<B: ReadBuffer<Word = u8> + Deref<Target = [u8]>>(self, buffer: B) -> Transfer<B> {
-        let end = self.clock.now() + self.cycles_a_byte * buffer.len() as u64;
-        Transfer { bus: self, buffer, end }
-    }
-}
-
-impl<B: Deref<Target = [u8]>> Transfer<B> {
-    /// The bytes are read at the very end: had anyone written to them, it would show.
-    fn wait(mut self) -> (Bus, B) {
-        self.bus.clock.wait_until(self.end);
-        self.bus.shown.extend_from_slice(&self.buffer);
-        (self.bus, self.buffer)
-    }
-}
-
-fn bytes(words: &'static mut [u16]) -> &'static mut [u8] {
-    bytemuck::must_cast_slice_mut(words)
-}
-
-fn words(bytes: &'static mut [u8]) -> &'static mut [u16] {
-    bytemuck::cast_slice_mut(bytes)
-}
-
-fn memory(words: usize) -> &'static mut [u16] {
-    Box::leak(vec![0; words].into_boxed_slice())
-}
-
 /// A screen in bands of one height.
 #[derive(Clone, Copy, Debug)]
 struct Screen {
@@ -155,16 +93,17 @@ impl Screen {
 
 const SKY: Rgb565 = Rgb565::new(3, 20, 9);
 
-/// Draws the frame's band `number`; returns what that took.
-fn draw(screen: Screen, number: u32, list: &List<'_>, clock: &Clock, band: &mut TimedBand) -> u64 {
-    let start = clock.now();
-    clock.pass(CLEAR * screen.words() as u64);
-    band.clear_to(&SKY);
-    list.render(number * screen.rows, band);
-    clock.now() - start
+/// A sky that takes its time.
+struct TimedSky<'a>(&'a Clock);
+
+impl Background<BigEndian<Rgb565>> for TimedSky<'_> {
+    fn fill_row(&self, y: u32, row: &mut [u16]) {
+        self.0.pass(CLEAR * row.len() as u64);
+        Background::<BigEndian<Rgb565>>::fill_row(&SKY, y, row);
+    }
 }
 
-/// What some frames took, and what the display was sent.
+/// What some frames took, and what the display shows in the end.
 #[derive(Debug)]
 struct Run {
     /// Cycles until all was sent.
@@ -186,32 +125,18 @@ fn with_one_band(screen: Screen, frames: u32, list: &List<'_>, mut bus: Bus) -> 
     let start = clock.now();
     let (mut band, mut draws) = (screen.band(), Vec::new());
     for number in (0..frames).flat_map(|_| 0..screen.bands) {
-        draws.push(draw(screen, number, list, &clock, &mut band));
+        let before = clock.now();
+        band.move_to(number * screen.rows);
+        band.clear_to(&TimedSky(&clock));
+        list.render(number * screen.rows, &mut band);
+        draws.push(clock.now() - before);
+        let (area, size) = (band.bounding_box(), band.size());
         let (pixels, depth) = band.into_slices();
-        let (idle, sent) = bus.send(bytes(pixels)).wait();
+        let (idle, sent) = bus.send(area, bytes(pixels)).wait();
         bus = idle;
-        band = Band::new(Size::new(screen.width, screen.rows), words(sent), depth)
-            .expect("the memory is the same");
+        band = Band::new(size, words(sent), depth).expect("the memory is the same");
     }
     Run { total: clock.now() - start, draws, shown: bus.shown }
-}
-
-/// What the DMA channel does.
-enum Channel {
-    Idle(Bus, &'static mut [u16]),
-    Sends(Transfer<&'static mut [u8]>),
-}
-
-impl Channel {
-    fn wait(self) -> (Bus, &'static mut [u16]) {
-        match self {
-            Self::Idle(bus, free) => (bus, free),
-            Self::Sends(transfer) => {
-                let (bus, sent) = transfer.wait();
-                (bus, words(sent))
-            }
-        }
-    }
 }
 
 /// Each band is drawn while the one before is sent.
@@ -219,14 +144,17 @@ fn with_two_bands(screen: Screen, frames: u32, list: &List<'_>, bus: Bus) -> Run
     let clock = bus.clock.clone();
     let start = clock.now();
     let (mut band, mut draws) = (screen.band(), Vec::new());
-    let mut channel = Channel::Idle(bus, memory(screen.words()));
-    for number in (0..frames).flat_map(|_| 0..screen.bands) {
-        draws.push(draw(screen, number, list, &clock, &mut band));
-        let (bus, mut pixels) = channel.wait();
-        band.swap_pixels(&mut pixels).expect("both are of one size");
-        channel = Channel::Sends(bus.send(bytes(pixels)));
+    let mut channel = Some(Channel::Idle(bus, memory(screen.words())));
+    let mut before = start;
+    for _ in 0..frames {
+        let Ok(()) = list.render_bands(screen.size().height, &TimedSky(&clock), &mut band, |_, band| {
+            draws.push(clock.now() - before);
+            channel = channel.take().map(|channel| channel.send(band));
+            before = clock.now();
+            Ok::<_, Infallible>(())
+        });
     }
-    let (bus, _) = channel.wait();
+    let (bus, _) = channel.expect("it is always there").wait();
     Run { total: clock.now() - start, draws, shown: bus.shown }
 }
 
@@ -270,12 +198,12 @@ fn the_display_shows_what_is_drawn_at_once() {
         }
         let picture: Vec<u8> =
             at_once(screen, &plain, &draws).into_iter().flat_map(u16::to_be_bytes).collect();
-        let bus = || Bus { clock: clock.clone(), cycles_a_byte, shown: Vec::new() };
+        let bus = || Bus::new(screen.size(), &clock, cycles_a_byte);
         let send = cycles_a_byte * 2 * screen.words() as u64;
         let one = with_one_band(screen, 2, &list, bus());
         let two = with_two_bands(screen, 2, &list, bus());
         for run in [&one, &two] {
-            prop_assert_eq!(&run.shown[..], picture.repeat(2));
+            prop_assert_eq!(&run.shown, &picture);
         }
         prop_assert_eq!(one.total, one.draw() + 2 * u64::from(screen.bands) * send);
         prop_assert_eq!(two.total, expected_of_two(&two.draws, send));
@@ -314,7 +242,7 @@ fn torus(list: &mut List<'static>, camera: &Camera, clock: &Clock) {
 
 /// The cycles of so many frames: drawing them, sending them, both with one band, both with two, and the longest that a band took.
 fn times(list: &List<'static>, clock: &Clock, frames: u32, cycles_a_byte: u64) -> [u64; 5] {
-    let bus = || Bus { clock: clock.clone(), cycles_a_byte, shown: Vec::new() };
+    let bus = || Bus::new(UPRIGHT.size(), clock, cycles_a_byte);
     let one = with_one_band(UPRIGHT, frames, list, bus());
     let two = with_two_bands(UPRIGHT, frames, list, bus());
     let band = cycles_a_byte * 2 * UPRIGHT.words() as u64;
@@ -362,6 +290,46 @@ fn frames_take_as_long_as_the_slower_of_drawing_and_sending() {
     }
 }
 
+/// Bands in which nothing changed are not sent, and the others as they are.
+#[test]
+fn only_bands_with_changes_are_sent() {
+    let clock = Clock::default();
+    let screen = Screen { width: 48, rows: 4, bands: 10 };
+    let camera = Camera::focal(24.0, screen.size());
+    let gold = timed(Material::gouraud(), &clock);
+    let mut band = screen.band();
+    let mut changes = Changes::<10>::new();
+    let mut channel = Some(Channel::Idle(Bus::new(screen.size(), &clock, 1), memory(screen.words())));
+    let mut list = List::new();
+    let mut send = |list: &List<'_>| {
+        let result = list.render_changed(
+            screen.size().height,
+            &TimedSky(&clock),
+            &mut band,
+            &mut changes,
+            |_, band| {
+                channel = channel.take().map(|channel| channel.send(band));
+                Ok::<_, Infallible>(())
+            },
+        );
+        let Ok(flushed) = result;
+        let (bus, free) = channel.take().expect("it is always there").wait();
+        let seen = (flushed.bands, bus.sent, bus.shown.clone());
+        channel = Some(Channel::Idle(Bus { sent: 0, ..bus }, free));
+        seen
+    };
+    for (frame, x) in [0.0, 0.2, 0.4].into_iter().enumerate() {
+        list.clear();
+        let pose = Pose::IDENTITY.scaled_lit(0.3).at(Vec3::lit(x, 0.0, -2.0));
+        camera.draw(&meshes()[2], &pose, gold, &mut list).expect("it is large");
+        let (bands, sent, shown) = send(&list);
+        assert!(if frame == 0 { bands == 10 } else { (1..5).contains(&bands) }, "{bands} bands");
+        assert_eq!(sent, bands as usize * 2 * screen.words());
+        let whole = with_one_band(screen, 1, &list, Bus::new(screen.size(), &clock, 1));
+        assert!(shown == whole.shown, "frame {frame}");
+    }
+}
+
 #[test]
 fn pixels_are_swapped_and_nothing_else() {
     // As a channel wants them that moves words of 4 bytes.
@@ -388,6 +356,30 @@ fn pixels_are_swapped_and_nothing_else() {
     assert_eq!((large.len(), band.pixels().len()), (60, 60));
     let wide: Result<&mut [u32], _> = bytemuck::try_cast_slice_mut(large);
     assert_eq!(wide.map(|words| words.len()), Ok(30));
+}
+
+#[test]
+fn below_the_last_full_band_there_is_a_part_and_then_all_of_it_again() {
+    let screen = Screen { width: 6, rows: 4, bands: 1 };
+    let (mut band, list) = (screen.band(), List::new());
+    let mut other = memory(24);
+    for fails in [false, true] {
+        let mut rows = Vec::new();
+        let result = list.render_bands(11, &SKY, &mut band, |area, band| {
+            assert_eq!(band.bounding_box(), area);
+            assert_eq!(
+                (band.pixels().len(), band.depth().len()),
+                (band.as_bytes().len() / 2, band.colors().len())
+            );
+            assert_eq!(band.pixels().len() as u32, 6 * area.size.height);
+            band.swap_pixels(&mut other).expect("both are of one size");
+            assert_eq!(other.len(), 24, "all of the memory is given away");
+            rows.push(area.size.height);
+            if fails && rows.len() == 3 { Err("busy") } else { Ok(()) }
+        });
+        assert_eq!((&rows[..], result.is_err()), (&[4, 4, 3][..], fails));
+        assert_eq!((band.size(), band.pixels().len()), (Size::new(6, 4), 24));
+    }
 }
 
 #[test]

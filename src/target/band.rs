@@ -31,11 +31,14 @@ use embedded_graphics::primitives::Rectangle;
 /// # Ok::<(), fixel::TargetError>(())
 /// ```
 pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
-    /// Rows one after another, width · height words.
+    /// Rows one after another, width · `rows` words.
     pixels: &'a mut [F::Word],
     /// Likewise.
     depth: &'a mut [D::Word],
     width: u16,
+    /// How many rows there is memory for.
+    rows: u16,
+    /// How many of them it has: all, but at the bottom of a screen.
     height: u16,
     /// The screen row of the first row.
     top: u16,
@@ -63,7 +66,8 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         // Depth that is never tested is never looked at.
         let needed = if D::ALWAYS_PASSES { needed.min(found) } else { needed };
         let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
-        Ok(Self { pixels, depth, width: size.width as u16, height: size.height as u16, top: 0 })
+        let (width, rows) = (size.width as u16, size.height as u16);
+        Ok(Self { pixels, depth, width, rows, height: rows, top: 0 })
     }
 
     /// The same memory as the rows from `row` on of a taller screen (at most 1023).
@@ -92,20 +96,25 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// The pixels' words, row after row.
     #[must_use]
     pub fn pixels(&self) -> &[F::Word] {
-        self.pixels
+        self.pixels.get(..self.len()).unwrap_or_default()
+    }
+
+    /// How many pixels it has.
+    fn len(&self) -> usize {
+        usize::from(self.width) * usize::from(self.height)
     }
 
     /// The depths, row after row; without depth what [`Band::new`] was given.
     #[must_use]
     pub fn depth(&self) -> &[D::Word] {
-        self.depth
+        self.depth.get(..self.len()).unwrap_or(self.depth)
     }
 
     /// The pixels' colours, row after row, for
     /// [`fill_contiguous`](DrawTarget::fill_contiguous) of a display.
     #[must_use]
     pub fn colors(&self) -> impl ExactSizeIterator<Item = F::Color> {
-        self.pixels.iter().map(|&word| F::decode(word))
+        self.pixels().iter().map(|&word| F::decode(word))
     }
 
     /// The pixels' bytes as they stand in memory, for a display's bus.
@@ -114,7 +123,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     where
         F::Word: bytemuck::NoUninit,
     {
-        bytemuck::must_cast_slice(self.pixels)
+        bytemuck::must_cast_slice(self.pixels())
     }
 
     /// The colours of an area of the screen, row after row, as far as it lies in the band.
@@ -134,21 +143,27 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// Shows nothing but a background, and forgets all depths.
     pub fn clear_to(&mut self, background: &impl Background<F>) {
         if self.width > 0 {
-            for (y, row) in (u32::from(self.top)..).zip(self.pixels.chunks_exact_mut(self.width.into())) {
+            let top = u32::from(self.top);
+            let rows = top..top + u32::from(self.height);
+            for (y, row) in rows.zip(self.pixels.chunks_exact_mut(self.width.into())) {
                 background.fill_row(y, row);
             }
         }
         self.clear_depth();
     }
 
-    /// The rows from `top` on of a screen of `height` rows, as many as there are here; `None` below the last.
-    pub(super) fn part(&mut self, top: u32, height: u32) -> Option<Band<'_, F, D>> {
-        let rows = height.min(MAX_SIDE).checked_sub(top)?.min(self.height.into());
-        if rows == 0 {
-            return None;
-        }
-        let size = Size::new(self.width.into(), rows);
-        Some(Band::new(size, self.pixels, self.depth).ok()?.starting_at(top))
+    /// Makes this the rows from `top` on of a screen of `height` rows, as many as there is memory for and the screen has. If that is
+    /// none, it returns `false`, and has all its rows again.
+    pub(super) fn move_to_part(&mut self, top: u32, height: u32) -> bool {
+        let rows = height.min(MAX_SIDE).saturating_sub(top).min(self.rows.into());
+        self.move_to(top);
+        self.height = if rows > 0 { rows as u16 } else { self.rows };
+        rows > 0
+    }
+
+    /// Ends what [`Band::move_to_part`] began.
+    pub(super) fn all_rows(&mut self) {
+        self.height = self.rows;
     }
 
     /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
