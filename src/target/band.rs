@@ -182,7 +182,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// let mut band = Band::<BigEndian<Rgb565>, NoDepth>::new(Size::new(240, 16), one, &mut [])?;
     /// let Ok(()) = band.clear(Rgb565::RED);
     /// band.swap_pixels(&mut free)?;
-    /// let bytes: &'static mut [u8] = bytemuck::must_cast_slice_mut(free); // for the channel
+    /// let bytes: &'static mut [u8] = bytemuck::cast_slice_mut(free); // for the channel
     /// assert_eq!(bytes[..4], [0xf8, 0x00, 0xf8, 0x00]);
     /// # Ok::<(), fixel::TargetError>(())
     /// ```
