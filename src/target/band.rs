@@ -17,7 +17,8 @@ use embedded_graphics::primitives::Rectangle;
 /// A strip of rows of a screen, or the whole screen, in memory that the user owns.
 ///
 /// It is an embedded-graphics [`DrawTarget`] in the coordinates of the whole screen: what lies
-/// outside its rows is left out. Its contents are as they were given: clear them first.
+/// outside its rows is left out. Its contents are as they were given: clear them first. To send
+/// one band by DMA while another is drawn, see [`Band::swap_pixels`].
 ///
 /// ```
 /// use fixel::{Band, Depth16};
@@ -30,11 +31,14 @@ use embedded_graphics::primitives::Rectangle;
 /// # Ok::<(), fixel::TargetError>(())
 /// ```
 pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
-    /// Rows one after another, width · height words.
+    /// Rows one after another, width · `rows` words.
     pixels: &'a mut [F::Word],
     /// Likewise.
     depth: &'a mut [D::Word],
     width: u16,
+    /// How many rows there is memory for.
+    rows: u16,
+    /// How many of them it has: all, but at the bottom of a screen.
     height: u16,
     /// The screen row of the first row.
     top: u16,
@@ -46,7 +50,7 @@ const MAX_SIDE: u32 = 1023;
 impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// A band of `size` pixels in the first width × height words of the two slices.
     ///
-    /// [`NoDepth`](super::NoDepth) takes a slice of `()`, of no bytes: `&mut [(); N]`.
+    /// [`NoDepth`](super::NoDepth) takes any slice of `()`: `&mut []`.
     ///
     /// # Errors
     ///
@@ -59,8 +63,11 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         let found = pixels.len();
         let pixels = pixels.get_mut(..needed).ok_or(TargetError::Pixels { needed, found })?;
         let found = depth.len();
+        // Depth that is never tested is never looked at.
+        let needed = if D::ALWAYS_PASSES { needed.min(found) } else { needed };
         let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
-        Ok(Self { pixels, depth, width: size.width as u16, height: size.height as u16, top: 0 })
+        let (width, rows) = (size.width as u16, size.height as u16);
+        Ok(Self { pixels, depth, width, rows, height: rows, top: 0 })
     }
 
     /// The same memory as the rows from `row` on of a taller screen (at most 1023).
@@ -89,20 +96,25 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// The pixels' words, row after row.
     #[must_use]
     pub fn pixels(&self) -> &[F::Word] {
-        self.pixels
+        self.pixels.get(..self.len()).unwrap_or_default()
     }
 
-    /// The depths, row after row.
+    /// How many pixels it has.
+    fn len(&self) -> usize {
+        usize::from(self.width) * usize::from(self.height)
+    }
+
+    /// The depths, row after row; without depth what [`Band::new`] was given.
     #[must_use]
     pub fn depth(&self) -> &[D::Word] {
-        self.depth
+        self.depth.get(..self.len()).unwrap_or(self.depth)
     }
 
     /// The pixels' colours, row after row, for
     /// [`fill_contiguous`](DrawTarget::fill_contiguous) of a display.
     #[must_use]
     pub fn colors(&self) -> impl ExactSizeIterator<Item = F::Color> {
-        self.pixels.iter().map(|&word| F::decode(word))
+        self.pixels().iter().map(|&word| F::decode(word))
     }
 
     /// The pixels' bytes as they stand in memory, for a display's bus.
@@ -111,7 +123,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     where
         F::Word: bytemuck::NoUninit,
     {
-        bytemuck::must_cast_slice(self.pixels)
+        bytemuck::must_cast_slice(self.pixels())
     }
 
     /// The colours of an area of the screen, row after row, as far as it lies in the band.
@@ -131,21 +143,62 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     /// Shows nothing but a background, and forgets all depths.
     pub fn clear_to(&mut self, background: &impl Background<F>) {
         if self.width > 0 {
-            for (y, row) in (u32::from(self.top)..).zip(self.pixels.chunks_exact_mut(self.width.into())) {
+            let top = u32::from(self.top);
+            let rows = top..top + u32::from(self.height);
+            for (y, row) in rows.zip(self.pixels.chunks_exact_mut(self.width.into())) {
                 background.fill_row(y, row);
             }
         }
         self.clear_depth();
     }
 
-    /// The rows from `top` on of a screen of `height` rows, as many as there are here; `None` below the last.
-    pub(super) fn part(&mut self, top: u32, height: u32) -> Option<Band<'_, F, D>> {
-        let rows = height.min(MAX_SIDE).checked_sub(top)?.min(self.height.into());
-        if rows == 0 {
-            return None;
+    /// Makes this the rows from `top` on of a screen of `height` rows, as many as there is memory for and the screen has. If that is
+    /// none, it returns `false`, and has all its rows again.
+    pub(super) fn move_to_part(&mut self, top: u32, height: u32) -> bool {
+        let rows = height.min(MAX_SIDE).saturating_sub(top).min(self.rows.into());
+        self.move_to(top);
+        self.height = if rows > 0 { rows as u16 } else { self.rows };
+        rows > 0
+    }
+
+    /// Ends what [`Band::move_to_part`] began.
+    pub(super) fn all_rows(&mut self) {
+        self.height = self.rows;
+    }
+
+    /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
+    /// anew. The depth stays; [`Band::clear_to`] clears it.
+    ///
+    /// A band of static memory gives and takes `&'static mut [u16]`, which a channel may own until it is done. As bytes in
+    /// [`BigEndian`](super::BigEndian) order they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
+    /// A channel that moves words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
+    ///
+    /// ```
+    /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+    /// use fixel::{Band, BigEndian, NoDepth};
+    /// # let memory = || &mut *Box::leak(Box::new([0; 240 * 16]));
+    /// # let (one, other) = (memory(), memory());
+    /// let mut free: &'static mut [u16] = other; // from a `StaticCell`, say, as is `one`
+    /// let mut band = Band::<BigEndian<Rgb565>, NoDepth>::new(Size::new(240, 16), one, &mut [])?;
+    /// let Ok(()) = band.clear(Rgb565::RED);
+    /// band.swap_pixels(&mut free)?;
+    /// let bytes: &'static mut [u8] = bytemuck::cast_slice_mut(free); // for the channel
+    /// assert_eq!(bytes[..4], [0xf8, 0x00, 0xf8, 0x00]);
+    /// # Ok::<(), fixel::TargetError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Pixels`] if there are fewer words than the band has pixels; nothing has changed then. Of more the band
+    /// keeps, and later gives away, only as many.
+    pub fn swap_pixels(&mut self, pixels: &mut &'a mut [F::Word]) -> Result<(), TargetError> {
+        let (needed, found) = (self.pixels.len(), pixels.len());
+        if found < needed {
+            return Err(TargetError::Pixels { needed, found });
         }
-        let size = Size::new(self.width.into(), rows);
-        Some(Band::new(size, self.pixels, self.depth).ok()?.starting_at(top))
+        let (others, _) = core::mem::take(pixels).split_at_mut(needed);
+        *pixels = core::mem::replace(&mut self.pixels, others);
+        Ok(())
     }
 
     /// The memory, for the next use: the pixels of a static band go to a DMA channel as they came.

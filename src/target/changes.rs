@@ -129,13 +129,13 @@ where
     /// # Errors
     ///
     /// The first of `flush`. The rest is not drawn then; the next frame will send it.
-    pub fn render_changed<const BANDS: usize, Z: DepthFormat, E>(
+    pub fn render_changed<'b, const BANDS: usize, Z: DepthFormat, E>(
         &self,
         height: u32,
         background: &impl Background<F>,
-        band: &mut Band<'_, F, Z>,
+        band: &mut Band<'b, F, Z>,
         changes: &mut Changes<BANDS>,
-        mut flush: impl FnMut(Rectangle, &mut Band<'_, F, Z>) -> Result<(), E>,
+        mut flush: impl FnMut(Rectangle, &mut Band<'b, F, Z>) -> Result<(), E>,
     ) -> Result<Flushed, E> {
         let shape = (band.size(), height);
         if changes.shape != shape {
@@ -143,8 +143,9 @@ where
             changes.everything();
         }
         let (mut flushed, mut top, mut number) = (Flushed::default(), 0, 0);
-        while let Some(mut part) = band.part(top, height) {
-            let window = part.window();
+        while band.move_to_part(top, height) {
+            let window = band.window();
+            let size = band.size();
             let drawn = self.extent(&window).map_or(Extent::NONE, |[columns, rows]| Extent {
                 left: columns[0] as i16,
                 right: columns[1] as i16,
@@ -155,22 +156,23 @@ where
             let changed = last.as_deref().copied().unwrap_or(Extent::ALL);
             let changed = changed.union(drawn).union(changes.marked.within(&window)).within(&window);
             flushed.all_bands += 1;
-            flushed.all_pixels += part.size().width * part.size().height;
+            flushed.all_pixels += size.width * size.height;
             let area = changed.rectangle();
             if !changed.is_empty() {
                 flushed.bands += 1;
                 flushed.pixels += area.size.width * area.size.height;
-                part.clear_to(background);
-                self.render(top, &mut part);
-                if let Err(error) = flush(area, &mut part) {
+                band.clear_to(background);
+                self.render(top, band);
+                if let Err(error) = flush(area, band) {
                     changes.everything();
+                    band.all_rows();
                     return Err(error);
                 }
             }
             if let Some(last) = last {
                 *last = drawn;
             }
-            top += part.size().height;
+            top += size.height;
             number += 1;
         }
         changes.marked = Extent::NONE;

@@ -141,27 +141,32 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
-    /// to `flush`, with its area. In the last there may be fewer rows.
+    /// to `flush`, with its area. In the last there may be fewer rows. A DMA channel can send them while the next is drawn:
+    /// [`Band::swap_pixels`] in `flush`.
     ///
     /// # Errors
     ///
     /// The first of `flush`; the rest is not drawn then.
-    pub fn render_bands<Z: DepthFormat, E>(
+    pub fn render_bands<'b, Z: DepthFormat, E>(
         &self,
         height: u32,
         background: &impl Background<F>,
-        band: &mut Band<'_, F, Z>,
-        mut flush: impl FnMut(Rectangle, &mut Band<'_, F, Z>) -> Result<(), E>,
+        band: &mut Band<'b, F, Z>,
+        mut flush: impl FnMut(Rectangle, &mut Band<'b, F, Z>) -> Result<(), E>,
     ) -> Result<(), E>
     where
         S: Shader<F>,
     {
         let mut top = 0;
-        while let Some(mut part) = band.part(top, height) {
-            part.clear_to(background);
-            self.render(top, &mut part);
-            flush(part.bounding_box(), &mut part)?;
-            top += part.size().height;
+        while band.move_to_part(top, height) {
+            band.clear_to(background);
+            self.render(top, band);
+            let area = band.bounding_box();
+            if let Err(error) = flush(area, band) {
+                band.all_rows();
+                return Err(error);
+            }
+            top += area.size.height;
         }
         Ok(())
     }
