@@ -95,8 +95,8 @@ pub use fixed;
 
 pub use math::{Pose, Quaternion, Turn, Vec3};
 pub use pipeline::{
-    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Span,
-    Stats, Varying, draw_triangle,
+    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Stats,
+    Varying, draw_triangle,
 };
 pub use scene::{
     Camera, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal, Projected, Texture,

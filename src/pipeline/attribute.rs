@@ -10,6 +10,8 @@ pub(super) struct Attribute {
     /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a straight triangle or a sliver in `Exact`,
     /// u − u₀ in I16F16.
     pub(super) plane: Plane,
+    /// Of a bent triangle: what is to be added x², xy and y² times, x and y being the way from corner 0's pixel.
+    pub(super) bend: [i32; 3],
     /// 1 … 31.
     pub(super) shift: i32,
     /// The range of u at the corners, I16F16: the least, how much less than u₀ that is, and how much more there may be.
@@ -27,7 +29,18 @@ impl Attribute {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
         let range = high.wrapping_sub(low) as u32;
-        (Self { plane: Plane::default(), shift: 0, least: at[0] + low, low, range, scale_log2 }, rise)
+        (
+            Self {
+                plane: Plane::default(),
+                bend: [0; 3],
+                shift: 0,
+                least: at[0] + low,
+                low,
+                range,
+                scale_log2,
+            },
+            rise,
+        )
     }
 
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
@@ -140,4 +153,10 @@ pub(super) fn short_inverse(steps: i32) -> u32 {
 fn step_of(rise: i32, inverse: i32) -> i32 {
     let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
     if rise < 0 { -size } else { size }
+}
+
+/// Of a product rounded down: one more if it is negative.
+#[inline]
+pub(super) fn towards_zero(product: i32) -> i32 {
+    product - (product >> 31)
 }

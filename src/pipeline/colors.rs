@@ -5,8 +5,9 @@
 //! most. A single channel keeps its 16 fraction bits.
 
 use super::fill::{Fill, packed_from, packed_step, shifted, uv_in_units};
+use super::patch::Row;
 use crate::scene::Texture;
-use crate::target::PixelFormat;
+use crate::target::{DepthFormat, PixelFormat};
 use core::marker::PhantomData;
 
 /// `M` channels in as few words as they need; places, steps and bends alike.
@@ -125,6 +126,13 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 
     #[inline]
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
+        let step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
+        let first = C::pack(at.map(|channel| channel >> C::DROPPED));
+        row.draw(first, |at| at.plus(step), |at| color::<F>(at.rgb()));
+    }
+
+    #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
         let (mut at, mut step, bend) = (C::pack(at), C::pack(step), C::pack(bend));
         for pixel in pixels {
@@ -189,6 +197,33 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     }
 
     #[inline]
+    fn short<D: DepthFormat, const M: usize>(
+        &self,
+        row: Row<'_, F::Word, D>,
+        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
+        (light, light_step): ([i32; M], [i32; M]),
+    ) where
+        C: Channels<M>,
+    {
+        let light_step = C::pack(light_step.map(|step| shifted(step, C::DROPPED)));
+        let light = C::pack(light.map(|channel| channel >> C::DROPPED));
+        if !self.is_packed {
+            return row.draw(
+                ([u, v], light),
+                |([u, v], light)| ([u.wrapping_add(u_step), v.wrapping_add(v_step)], light.plus(light_step)),
+                |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
+            );
+        }
+        let [a, b] = self.texture.log2();
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        row.draw(
+            (packed_from([u >> a, v >> b], u_step), light),
+            |(packed, light)| (packed.wrapping_add(step), light.plus(light_step)),
+            |(packed, light)| lit::<F>(self.texture.fetch_packed(packed), light.rgb()),
+        );
+    }
+
+    #[inline]
     fn long<const M: usize>(
         &self,
         pixels: &mut [F::Word],
@@ -247,6 +282,16 @@ macro_rules! fill_of_lit_texels {
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
                 self.long(pixels, ([u, v], [u_step, v_step]), (light, light_step));
+            }
+
+            #[inline]
+            fn row<D: DepthFormat>(
+                &self,
+                row: Row<'_, F::Word, D>,
+                [u, v, light @ ..]: [i32; $n],
+                [u_step, v_step, light_step @ ..]: [i32; $n],
+            ) {
+                self.short(row, ([u, v], [u_step, v_step]), (light, light_step));
             }
 
             #[inline]

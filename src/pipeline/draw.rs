@@ -2,7 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
-use super::setup::{Cull, Needs, Oriented, TriangleSetup};
+use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
@@ -298,7 +298,12 @@ where
             return stats.count(|stats| &mut stats.out_of_sight);
         }
         stats.count(|stats| &mut stats.drawn);
-        self.setup.set(triangle, &self.needs);
+        self.setup.corners = triangle.vertices.map(position);
+        self.rows.start(&self.setup.corners, &self.window);
+        if self.rows.are_none() {
+            return;
+        }
+        self.setup.set(triangle, &self.needs, self.rows.are_simple());
         self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
     }
 }

@@ -73,12 +73,14 @@ pub(crate) struct TriangleSetup {
     pub(super) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(super) q: Plane,
+    /// Of a bent triangle: how many steps along a row attributes are nearly linear.
+    pub(super) longest: i32,
     /// The least q of the corners.
     pub(super) q_min: u32,
     pub(super) attributes: [Attribute; ATTRIBUTES],
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 240);
+const _: () = assert!(size_of::<TriangleSetup>() <= 304);
 
 /// A linear function on the screen, in integers that wrap.
 #[derive(Clone, Copy, Debug, Default)]
@@ -187,16 +189,18 @@ impl TriangleSetup {
             straight: false,
             z: Plane::default(),
             q: Plane::default(),
+            longest: 0,
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
     }
 
     #[inline]
-    pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        self.corners = triangle.vertices.map(position);
+    pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
+        self.longest = 31;
         if needs.inputs == Inputs::None && !needs.depth {
+            self.straight = true;
             return;
         }
         if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
@@ -206,7 +210,7 @@ impl TriangleSetup {
             };
             self.gray = triangle.vertices.into_iter().all(is_gray);
         }
-        if !self.set_small_planes(triangle, needs) {
+        if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
         }
     }
@@ -231,6 +235,7 @@ impl TriangleSetup {
             self.z = self.plane(&slopes, z[0], [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32));
         }
         if needs.inputs == Inputs::None {
+            self.straight = true;
             return;
         }
         self.straight = match needs.straight {
@@ -408,6 +413,6 @@ pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
     [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
 }
 
-fn position(vertex: &ScreenVertex) -> [i32; 2] {
+pub(super) fn position(vertex: &ScreenVertex) -> [i32; 2] {
     [vertex.x.to_bits().into(), vertex.y.to_bits().into()]
 }

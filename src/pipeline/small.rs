@@ -10,7 +10,7 @@ use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short_of;
-use crate::num::mul_17;
+use crate::num::{mul_16, mul_16_signed, mul_17};
 
 /// What all planes of a triangle have in common.
 struct Slopes {
@@ -56,7 +56,7 @@ impl Slopes {
 impl TriangleSetup {
     /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
     #[inline(never)]
-    pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) -> bool {
+    pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) -> bool {
         let edges = edges(&self.corners);
         let largest = edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
         // At most 64 pixels across, and at least a quarter thick: a step of 2²⁷ over that still fits.
@@ -85,11 +85,11 @@ impl TriangleSetup {
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
-        if needs.depth {
-            let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
-            if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
-                return false;
-            }
+        let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
+        if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
+            return false;
+        }
+        if needs.depth || bend.is_some() {
             self.z = slopes.plane(q[0], rise);
             // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
             if self
@@ -101,21 +101,75 @@ impl TriangleSetup {
                 return false;
             }
         }
-        self.straight = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        let mut straight = true;
+        let fits = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             let (mut attribute, rise) = Attribute::between(at, scale_log2);
             if attribute.range >= 1 << 27 {
                 return false;
             }
             attribute.plane = slopes.plane(0, rise);
             self.attributes[i] = attribute;
-            bend.as_ref()
-                .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2))
+            straight &= bend
+                .as_ref()
+                .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2));
+            true
         });
+        if !fits {
+            return false;
+        }
+        self.straight = straight;
+        if let Some((bend, _)) = &bend
+            && !straight
+            && simple
+            && !needs.every_pixel
+            && let Some(slopes_of_q) = bend.slopes(self.z.steps)
+        {
+            self.set_bent(triangle, needs, &slopes, bend, slopes_of_q);
+        }
         // Steps of q and (u − u₀)·q, which take all of 32 bits, need triangles of two pixels' thickness.
         self.straight
             || !needs.every_pixel
                 && largest * 32 <= triangle.area
                 && self.set_divided(triangle, needs, &slopes, q)
+    }
+
+    /// Bends attributes, of which planes are set, as much as perspective does.
+    fn set_bent(
+        &mut self,
+        triangle: &Oriented<'_>,
+        needs: &Needs,
+        slopes: &Slopes,
+        bend: &Bend,
+        [q_right, q_down]: [i32; 2],
+    ) {
+        self.straight = true;
+        while (self.longest * self.longest) * q_right.abs() > 3 << 13 {
+            self.longest >>= 1;
+        }
+        let [x, y] = slopes.to_center;
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let (mut attribute, rise) = Attribute::between(at, scale_log2);
+            let [right, down] = self.attributes[i].plane.steps;
+            let xx = -mul_16_signed(right, q_right);
+            let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
+            let yy = -mul_16_signed(down, q_down);
+            // So much that the corners are what they were.
+            attribute.plane = slopes.plane(0, [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i))));
+            // From corner 0's pixel instead of corner 0.
+            let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
+            let [m, n] = slopes.pixel;
+            attribute.plane.origin = attribute
+                .plane
+                .origin
+                .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3)
+                .wrapping_sub(m.wrapping_mul(more[0]).wrapping_add(n.wrapping_mul(more[1])) as u32);
+            for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
+                *step = step.wrapping_add(more);
+            }
+            attribute.bend = [xx, xy, yy];
+            self.attributes[i] = attribute;
+            true
+        });
     }
 
     /// Sets the planes of q and of attributes that are to be divided by it. Distances differ by less than a quarter, so that 17

@@ -17,16 +17,17 @@
 //! The number is ceil(−E/16dy) for the edge function E at the row's first centre. From row to row it changes
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
+use super::fill::Fill;
 use super::setup::{Oriented, TriangleSetup};
+use super::shade::{Pixels, Quality};
 use crate::math::recip::{Reciprocal, quotient_of_10_bits};
 use crate::num::I12F4;
 use crate::scene::Viewport;
 use core::ops::Range;
 
-/// Pixels of one row of a triangle, side by side and all visible; handed to a
-/// [`Shader`](super::Shader).
+/// Pixels of one row of a triangle, side by side and all visible.
 #[derive(Clone, Copy, Debug)]
-pub struct Span<'a> {
+pub(crate) struct Span<'a> {
     pub(super) setup: &'a TriangleSetup,
     pub(super) x: i32,
     pub(super) y: i32,
@@ -39,23 +40,6 @@ impl<'a> Span<'a> {
         Self { setup, x, y }
     }
 
-    /// Column of the first pixel.
-    #[must_use]
-    pub const fn x(&self) -> i32 {
-        self.x
-    }
-
-    /// Row on the screen (not in the band).
-    #[must_use]
-    pub const fn y(&self) -> i32 {
-        self.y
-    }
-
-    /// Whether the triangle's colours are greys, so that the first channel stands for all.
-    pub(crate) const fn is_gray(&self) -> bool {
-        self.setup.gray
-    }
-
     /// Without its first pixels.
     pub(crate) const fn ahead(&self, pixels: usize) -> Self {
         Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
@@ -64,6 +48,29 @@ impl<'a> Span<'a> {
     /// q = near/w with 31 fraction bits at the first pixel, and its step.
     pub(crate) fn depth(&self) -> (u32, i32) {
         self.setup.at(&self.setup.z, self.x, self.y)
+    }
+}
+
+/// A [`Span`] and its pixels.
+pub(crate) struct Run<'a, W> {
+    pub(crate) span: Span<'a>,
+    pub(crate) pixels: &'a mut [W],
+}
+
+impl<W: Copy> Pixels<W> for Run<'_, W> {
+    #[inline]
+    fn is_gray(&self) -> bool {
+        self.span.setup.gray
+    }
+
+    #[inline]
+    fn fill_evenly(self, word: W) {
+        self.pixels.fill(word);
+    }
+
+    #[inline]
+    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+        self.span.fill::<Q, N, L>(self.pixels, fill);
     }
 }
 
@@ -144,9 +151,9 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// For corners that run clockwise.
+    /// Those of a triangle whose corners run clockwise.
     #[inline(never)]
-    fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
+    pub(crate) fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
         // From the top down the right to `next`, and down the left to `last`.
         let [top, next, last] = if a[1] <= b[1] && a[1] <= c[1] {
             [a, b, c]
@@ -189,11 +196,60 @@ impl Rows {
         }
     }
 
-    /// The edge that begins at the knee takes the place of the one that ends there.
+    /// Whether it has none.
+    #[inline]
+    pub(super) fn are_none(&self) -> bool {
+        self.row >= self.end
+    }
+
+    /// Whether they are at most 32 pixels wide and less high, and all columns within the window.
+    #[inline]
+    pub(crate) fn are_simple(&self) -> bool {
+        !self.is_long && !self.is_cut
+    }
+
+    /// The first row.
+    #[inline]
+    pub(super) fn row(&self) -> i32 {
+        self.row
+    }
+
+    /// The next row where [`Rows::are_simple`]: the first column and the one behind the last. It may be empty.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Option<(i32, i32)> {
+        if self.row >= self.knee && !self.reach_knee() {
+            return None;
+        }
+        self.row += 1;
+        Some((self.left.next(), self.right.next()))
+    }
+
+    /// Hands on every row: the row, the first column and the one behind the last.
+    #[inline]
+    pub(crate) fn each(&mut self, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
+        while let Some((mut left, mut right)) = self.next() {
+            left = left.max(window.columns.start);
+            right = right.min(window.columns.end);
+            if self.is_long {
+                self.left.carry();
+                self.right.carry();
+            }
+            if left < right {
+                emit(self.row - 1, left, right);
+            }
+        }
+    }
+
+    /// The edge that begins at the knee takes the place of the one that ends there. False at the end.
     #[inline(never)]
-    fn pass_knee(&mut self) {
+    fn reach_knee(&mut self) -> bool {
+        if self.row >= self.end {
+            return false;
+        }
         let [top, bottom] = self.lower;
         self.set_edge(self.lower_is_right, &top, &bottom);
+        self.knee = self.end;
+        true
     }
 }
 
@@ -234,40 +290,6 @@ impl Window {
         };
         let [a, b, c] = triangle.vertices;
         overlaps(a.y, b.y, c.y, &self.rows) && overlaps(a.x, b.x, c.x, &self.columns)
-    }
-}
-
-impl TriangleSetup {
-    /// Hands on every row of the triangle within a window: the row, the first column and the one behind the last.
-    #[inline]
-    pub(crate) fn rows(&self, rows: &mut Rows, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
-        rows.start(&self.corners, window);
-        let mut y = rows.row;
-        let is_simple = !rows.is_long && !rows.is_cut;
-        while y < rows.end {
-            let stop = if y < rows.knee {
-                rows.knee
-            } else {
-                rows.row = y;
-                rows.pass_knee();
-                rows.end
-            };
-            while y < stop {
-                let (mut left, mut right) = (rows.left.next(), rows.right.next());
-                if !is_simple {
-                    left = left.max(window.columns.start);
-                    right = right.min(window.columns.end);
-                    if rows.is_long {
-                        rows.left.carry();
-                        rows.right.carry();
-                    }
-                }
-                if left < right {
-                    emit(y, left, right);
-                }
-                y += 1;
-            }
-        }
     }
 }
 

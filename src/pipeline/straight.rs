@@ -29,6 +29,9 @@ pub(super) struct Bend {
     lengths: [u32; 3],
     /// |Δq|/q_min along them, 16 fraction bits, below ¼.
     falls: [u32; 3],
+    /// 1/q_min = `reciprocal` · 2^(`zeros` − 48).
+    reciprocal: u32,
+    zeros: u32,
 }
 
 impl Bend {
@@ -51,6 +54,8 @@ impl Bend {
             // Rounded up; 15 bits times 17.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
                 .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
+            reciprocal,
+            zeros,
         })
     }
 
@@ -71,5 +76,39 @@ impl Bend {
         let error = (error >> 8) + 1;
         error <= ((unit >> 8) * (limit >> 8)) >> 8
             || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
+    }
+
+    /// |Δq| from corner 0 to 1 or 2 by the middle of the least and the greatest q, 16 fraction bits.
+    #[inline]
+    pub(super) fn fall(&self, i: usize) -> u32 {
+        (self.falls[i] * self.to_middle()) >> 15
+    }
+
+    /// q_min by the middle of the least and the greatest, 15 fraction bits, nearly.
+    #[inline]
+    fn to_middle(&self) -> u32 {
+        (1 << 15) - (self.falls[0].max(self.falls[1]) >> 2)
+    }
+
+    /// By how much of the middle of the least and the greatest q it changes a column and a row, 16 fraction bits. `None` where a
+    /// quadratic would not do.
+    #[inline]
+    pub(super) fn slopes(&self, steps: [i32; 2]) -> Option<[i32; 2]> {
+        let most = self.falls[0].max(self.falls[1]);
+        // In 1/16 px.
+        let error = self
+            .lengths
+            .iter()
+            .zip(self.falls)
+            .all(|(length, fall)| length * ((fall * most) >> 16) <= 12 << 16);
+        let least = (1u32 << 31) >> self.zeros;
+        if !error || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
+            return None;
+        }
+        let middle = self.to_middle();
+        Some(steps.map(|step| {
+            let slope = (((step << self.zeros) >> 16) * self.reciprocal as i32) >> 16;
+            (slope * middle as i32) >> 15
+        }))
     }
 }

@@ -1,0 +1,121 @@
+//! Stage 5 for small straight triangles, which most of a mesh's are: all rows at one go.
+//!
+//! A row of such a triangle has two or three pixels. To find which of them are visible, and to hand these to a loop that draws
+//! them, takes longer than to draw them: so nothing is handed on, and one loop tests a pixel's depth and draws it. All values
+//! are linear on the screen, and go from row to row by one addition.
+
+use super::fill::{Each, Fill};
+use super::setup::TriangleSetup;
+use super::shade::{Pixels, Quality};
+use super::span::Rows;
+use crate::num::U1F31;
+use crate::target::DepthFormat;
+
+/// The pixels of a small straight triangle.
+pub(crate) struct Patch<'a, W, D: DepthFormat> {
+    pub(crate) setup: &'a TriangleSetup,
+    pub(crate) rows: &'a mut Rows,
+    /// Those of the rows of the screen from `top` on, `width` each.
+    pub(crate) pixels: &'a mut [W],
+    pub(crate) depth: &'a mut [D::Word],
+    pub(crate) width: usize,
+    pub(crate) top: i32,
+}
+
+impl<W: Copy, D: DepthFormat> Pixels<W> for Patch<'_, W, D> {
+    fn is_gray(&self) -> bool {
+        self.setup.gray
+    }
+
+    fn fill_evenly(self, word: W) {
+        self.draw(&Each::new(|[]: [i32; 0]| word));
+    }
+
+    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+        self.draw(fill);
+    }
+}
+
+impl<W, D: DepthFormat> Patch<'_, W, D> {
+    /// Whether a triangle can be drawn so.
+    #[inline]
+    pub(crate) fn takes(setup: &TriangleSetup, rows: &Rows) -> bool {
+        setup.straight && !setup.sliver && rows.are_simple()
+    }
+
+    #[inline(never)]
+    fn draw<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+        let Self { setup, rows, pixels, depth, width, top } = self;
+        let Some(attributes) = setup.attributes.first_chunk::<N>() else {
+            return;
+        };
+        // So that both are known to be as long.
+        let length = pixels.len().min(depth.len());
+        let (pixels, depth) = (&mut pixels[..length], &mut depth[..length]);
+        let y = rows.row();
+        let mut row = (y - top) as usize * width;
+        // At the first column.
+        let mut near_w = setup.at(&setup.z, 0, y).0;
+        let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, 0, y).0);
+        let near_w_step = setup.z.steps[0];
+        let mut n = y - (setup.corners[0][1] >> 4);
+        while let Some((mut start, end)) = rows.next() {
+            while start < end {
+                let steps = (end - start - 1).min(setup.longest);
+                let m = start - (setup.corners[0][0] >> 4);
+                let (mut at, mut step) = ([0; N], [0; N]);
+                for (i, attribute) in attributes.iter().enumerate() {
+                    let ([right, _], [xx, xy, yy]) = (attribute.plane.steps, attribute.bend);
+                    let value = values[i]
+                        .wrapping_add_signed(start.wrapping_mul(right))
+                        .wrapping_add_signed(
+                            m.wrapping_mul(xx.wrapping_mul(m).wrapping_add(xy.wrapping_mul(n))),
+                        )
+                        .wrapping_add_signed(yy.wrapping_mul(n * n));
+                    let right =
+                        right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(2 * m + steps));
+                    (at[i], step[i]) = attribute.along((value, right), steps);
+                }
+                let first = row.wrapping_add(start as usize);
+                let range = first..first.wrapping_add(steps as usize + 1);
+                if let (Some(pixels), Some(depth)) = (pixels.get_mut(range.clone()), depth.get_mut(range)) {
+                    let near_w = near_w.wrapping_add_signed(start.wrapping_mul(near_w_step));
+                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step }, at, step);
+                }
+                start += steps + 1;
+            }
+            row += width;
+            n += 1;
+            near_w = near_w.wrapping_add_signed(setup.z.steps[1]);
+            for (value, attribute) in values.iter_mut().zip(attributes) {
+                *value = value.wrapping_add_signed(attribute.plane.steps[1]);
+            }
+        }
+    }
+}
+
+/// A short row of pixels, some of which may be hidden.
+#[derive(Debug)]
+pub struct Row<'a, W, D: DepthFormat> {
+    pixels: &'a mut [W],
+    depth: &'a mut [D::Word],
+    /// With 31 fraction bits, at the first pixel.
+    near_w: u32,
+    near_w_step: i32,
+}
+
+impl<W, D: DepthFormat> Row<'_, W, D> {
+    /// Draws what is visible of it: the word of a place, the first being `at`.
+    #[inline]
+    pub(super) fn draw<P: Copy>(mut self, mut at: P, next: impl Fn(P) -> P, word: impl Fn(P) -> W) {
+        for (pixel, stored) in self.pixels.iter_mut().zip(self.depth) {
+            if D::test(stored, U1F31::from_bits(self.near_w)) {
+                *pixel = word(at);
+            }
+            self.near_w = self.near_w.wrapping_add_signed(self.near_w_step);
+            at = next(at);
+            // Not unrolled.
+            core::hint::black_box(());
+        }
+    }
+}
