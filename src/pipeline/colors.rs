@@ -26,6 +26,11 @@ pub(crate) trait Channels<const M: usize>: Copy {
 
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
+
+    #[inline]
+    fn word<F: PixelFormat>(self) -> F::Word {
+        color::<F>(self.rgb())
+    }
 }
 
 /// One channel for all three.
@@ -50,6 +55,11 @@ impl Channels<1> for Gray {
     #[inline]
     fn rgb(self) -> [u32; 3] {
         [self.0 as u32 >> 16; 3]
+    }
+
+    #[inline]
+    fn word<F: PixelFormat>(self) -> F::Word {
+        F::gray((self.0 >> 16) as u8)
     }
 }
 
@@ -101,7 +111,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn pixel(&self, at: [i32; M]) -> F::Word {
-        color::<F>(C::pack(at.map(|channel| channel >> C::DROPPED)).rgb())
+        C::pack(at.map(|channel| channel >> C::DROPPED)).word::<F>()
     }
 
     #[inline]
@@ -110,7 +120,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
             let mut packed = C::pack(at.map(|channel| channel >> C::DROPPED));
             for pixel in pixels {
-                *pixel = color::<F>(packed.rgb());
+                *pixel = packed.word::<F>();
                 packed = packed.plus(packed_step);
             }
         };
@@ -129,14 +139,14 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
         let step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
         let first = C::pack(at.map(|channel| channel >> C::DROPPED));
-        row.draw(first, |at| at.plus(step), |at| color::<F>(at.rgb()));
+        row.draw(first, |at| at.plus(step), |at| at.word::<F>());
     }
 
     #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
         let (mut at, mut step, bend) = (C::pack(at), C::pack(step), C::pack(bend));
         for pixel in pixels {
-            *pixel = color::<F>(at.rgb());
+            *pixel = at.word::<F>();
             (at, step) = (at.plus(step), step.plus(bend));
         }
     }

@@ -11,6 +11,9 @@ use super::span::Rows;
 use crate::num::U1F31;
 use crate::target::DepthFormat;
 
+/// The longest row of a straight triangle, in steps.
+pub(super) const STRAIGHT: i32 = 31;
+
 /// The pixels of a small straight triangle.
 pub(crate) struct Patch<'a, W, D: DepthFormat> {
     pub(crate) setup: &'a TriangleSetup,
@@ -52,34 +55,35 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         // So that both are known to be as long.
         let length = pixels.len().min(depth.len());
         let (pixels, depth) = (&mut pixels[..length], &mut depth[..length]);
-        let y = rows.row();
-        let mut row = (y - top) as usize * width;
-        // At the first column.
-        let mut near_w = setup.at(&setup.z, 0, y).0;
-        let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, 0, y).0);
+        // At corner 0's column, and from its row on.
+        let [x, y] = setup.corners[0].map(|at| at >> 4);
+        let mut n = rows.row() - y;
+        let mut row = (rows.row() - top) as usize * width;
+        let mut near_w = setup.at(&setup.z, x, rows.row()).0;
+        let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, x, rows.row()).0);
         let near_w_step = setup.z.steps[0];
-        let mut n = y - (setup.corners[0][1] >> 4);
+        let is_bent = setup.longest < STRAIGHT;
         while let Some((mut start, end)) = rows.next() {
             while start < end {
-                let steps = (end - start - 1).min(setup.longest);
-                let m = start - (setup.corners[0][0] >> 4);
+                let (m, steps) = (start - x, (end - start - 1).min(setup.longest));
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
-                    let ([right, _], [xx, xy, yy]) = (attribute.plane.steps, attribute.bend);
-                    let value = values[i]
-                        .wrapping_add_signed(start.wrapping_mul(right))
-                        .wrapping_add_signed(
-                            m.wrapping_mul(xx.wrapping_mul(m).wrapping_add(xy.wrapping_mul(n))),
-                        )
-                        .wrapping_add_signed(yy.wrapping_mul(n * n));
-                    let right =
-                        right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(2 * m + steps));
+                    let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
+                    if is_bent {
+                        let [xx, xy, yy] = attribute.bend;
+                        let down = yy.wrapping_mul(n).wrapping_mul(n);
+                        right = right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(m));
+                        value = value.wrapping_add_signed(down.wrapping_add(right.wrapping_mul(m)));
+                        right = right.wrapping_add(xx.wrapping_mul(m + steps));
+                    } else {
+                        value = value.wrapping_add_signed(right.wrapping_mul(m));
+                    }
                     (at[i], step[i]) = attribute.along((value, right), steps);
                 }
                 let first = row.wrapping_add(start as usize);
                 let range = first..first.wrapping_add(steps as usize + 1);
                 if let (Some(pixels), Some(depth)) = (pixels.get_mut(range.clone()), depth.get_mut(range)) {
-                    let near_w = near_w.wrapping_add_signed(start.wrapping_mul(near_w_step));
+                    let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
                     fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step }, at, step);
                 }
                 start += steps + 1;

@@ -36,6 +36,7 @@
 
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
+use super::patch::STRAIGHT;
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::Reciprocal;
@@ -198,7 +199,7 @@ impl TriangleSetup {
     #[inline]
     pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
-        self.longest = 31;
+        self.longest = STRAIGHT;
         if needs.inputs == Inputs::None && !needs.depth {
             self.straight = true;
             return;

@@ -6,6 +6,7 @@
 //! columns and rows a value is off by 1/1024 of its change over one pixel.
 
 use super::attribute::Attribute;
+use super::patch::STRAIGHT;
 use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
@@ -27,7 +28,7 @@ struct Slopes {
 
 impl Slopes {
     /// From the value at corner 0 and the rise from there to corners 1 and 2; a step has to fit 32 bits.
-    #[inline]
+    #[inline(never)]
     fn plane(&self, mut origin: u32, rise: [i32; 2]) -> Plane {
         let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
         let dropped = if size < 1 << 19 {
@@ -143,6 +144,7 @@ impl TriangleSetup {
         [q_right, q_down]: [i32; 2],
     ) {
         self.straight = true;
+        self.longest = STRAIGHT / 2;
         while (self.longest * self.longest) * q_right.abs() > 3 << 13 {
             self.longest >>= 1;
         }

@@ -18,10 +18,9 @@
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
 use super::fill::Fill;
-use super::setup::{Oriented, TriangleSetup};
+use super::setup::TriangleSetup;
 use super::shade::{Pixels, Quality};
 use crate::math::recip::{Reciprocal, quotient_of_10_bits};
-use crate::num::I12F4;
 use crate::scene::Viewport;
 use core::ops::Range;
 
@@ -91,9 +90,15 @@ const FRACTION: u32 = 20;
 
 impl Edge {
     /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
+    #[inline(always)]
+    fn set(&mut self, is_long: bool, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
+        if is_long { self.long(top, bottom, row) } else { self.short(top, bottom, row) }
+    }
+
+    /// Likewise.
     #[cold]
     #[inline(never)]
-    fn long(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
+    fn long(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
@@ -108,8 +113,8 @@ impl Edge {
     ///
     /// The number is a multiple of 1/16dy, rounded up. 2⁻¹⁴ less, half of the least such step, may be wrong by just as much. The
     /// reciprocal is, by 2⁻²⁰, and makes |dx|·2⁻²⁴ ≤ 2⁻¹⁵ of x; the slope's rounding makes 2⁻²¹ a row, 2⁻¹⁶ at most.
-    #[inline]
-    fn short(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
+    #[inline(never)]
+    fn short(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
         let slope = quotient_of_10_bits(bottom[0] - top[0], bottom[1] - top[1]);
         let below = row * 16 + 8 - top[1];
         self.x = ((top[0] + 8) << (FRACTION - 4)) + ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
@@ -163,36 +168,26 @@ impl Rows {
             [c, a, b]
         };
         let (next_row, last_row) = (first_row(next[1]), first_row(last[1]));
+        let Range { start, end } = window.columns;
         self.row = first_row(top[1]).max(window.rows.start);
         self.end = next_row.max(last_row).min(window.rows.end);
-        self.knee = next_row.min(last_row).min(self.end);
+        let (least, most) = (top[0].min(next[0]).min(last[0]), top[0].max(next[0]).max(last[0]));
+        if first_row(least) >= end || first_row(most) < start {
+            self.end = self.row;
+        }
         if self.row >= self.end {
             return;
         }
-        let Range { start, end } = window.columns;
-        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
-        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
-        let wide = |from: i32, to: i32| to - from + (1 << 9);
-        self.is_long = (wide(top[0], next[0]) | wide(top[0], last[0]) | wide(next[0], last[0])) as u32 >> 10
-            != 0
-            || (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
+        self.knee = next_row.min(last_row).min(self.end);
+        self.is_cut = least < start * 16 || most > end * 16;
+        self.is_long = most - least >= 1 << 9 || next[1].max(last[1]) - top[1] >= 1 << 9;
         self.lower_is_right = next_row < last_row;
         self.lower = if self.lower_is_right { [*next, *last] } else { [*last, *next] };
         if next_row > self.row {
-            self.set_edge(true, top, next);
+            self.right.set(self.is_long, top, next, self.row);
         }
         if last_row > self.row {
-            self.set_edge(false, top, last);
-        }
-    }
-
-    #[inline(never)]
-    fn set_edge(&mut self, is_right: bool, top: &[i32; 2], bottom: &[i32; 2]) {
-        let edge = if is_right { &mut self.right } else { &mut self.left };
-        if self.is_long {
-            edge.long(*top, *bottom, self.row);
-        } else {
-            edge.short(*top, *bottom, self.row);
+            self.left.set(self.is_long, top, last, self.row);
         }
     }
 
@@ -246,8 +241,9 @@ impl Rows {
         if self.row >= self.end {
             return false;
         }
-        let [top, bottom] = self.lower;
-        self.set_edge(self.lower_is_right, &top, &bottom);
+        let [top, bottom] = &self.lower;
+        let edge = if self.lower_is_right { &mut self.right } else { &mut self.left };
+        edge.set(self.is_long, top, bottom, self.row);
         self.knee = self.end;
         true
     }
@@ -280,17 +276,6 @@ impl Window {
     pub(crate) fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
     }
-
-    /// Whether a triangle's bounding box has a pixel centre in it.
-    #[inline]
-    pub(super) fn touches(&self, triangle: &Oriented<'_>) -> bool {
-        let overlaps = |a: I12F4, b: I12F4, c: I12F4, range: &Range<i32>| {
-            let (low, high) = (a.min(b).min(c).to_bits(), a.max(b).max(c).to_bits());
-            first_row(low.into()) < range.end && first_row(high.into()) >= range.start
-        };
-        let [a, b, c] = triangle.vertices;
-        overlaps(a.y, b.y, c.y, &self.rows) && overlaps(a.x, b.x, c.x, &self.columns)
-    }
 }
 
 #[cfg(test)]
@@ -310,7 +295,7 @@ mod tests {
                 // As the window may have it, from any row on.
                 let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);
                 if first < end {
-                    edge.short(top, bottom, first);
+                    edge.short(&top, &bottom, first);
                 }
                 for row in first..end {
                     let exactly = (top[0] - 8) * dy + (row * 16 + 8 - top[1]) * dx + 16 * dy - 1;
