@@ -28,7 +28,7 @@ struct Slopes {
 
 impl Slopes {
     /// From the value at corner 0 and the rise from there to corners 1 and 2; a step has to fit 32 bits.
-    #[inline(never)]
+    #[inline]
     fn plane(&self, mut origin: u32, rise: [i32; 2]) -> Plane {
         let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
         let dropped = if size < 1 << 19 {
@@ -127,11 +127,7 @@ impl TriangleSetup {
         {
             self.set_bent(triangle, needs, &slopes, bend, slopes_of_q);
         }
-        // Steps of q and (u − u₀)·q, which take all of 32 bits, need triangles of two pixels' thickness.
         self.straight
-            || !needs.every_pixel
-                && largest * 32 <= triangle.area
-                && self.set_divided(triangle, needs, &slopes, q)
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.
@@ -172,27 +168,5 @@ impl TriangleSetup {
             self.attributes[i] = attribute;
             true
         });
-    }
-
-    /// Sets the planes of q and of attributes that are to be divided by it. Distances differ by less than a quarter, so that 17
-    /// bits of q are enough.
-    fn set_divided(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes, q: [u32; 3]) -> bool {
-        let up = q[0].leading_zeros() - 1;
-        let q = q.map(|q| q << up);
-        self.q_min = q[1].min(q[2]);
-        self.q = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let (mut attribute, rise) = Attribute::between(at, scale_log2);
-            if attribute.range >= 1 << 27 {
-                return false;
-            }
-            // 29 bits times 17, of which the upper 30 are kept.
-            let up = (attribute.range | 1).leading_zeros() - 3;
-            let product = |i: usize| mul_17(rise[i] << up, q[i + 1] >> 14);
-            attribute.shift = 2 + up as i32;
-            attribute.plane = slopes.plane(0, [product(0), product(1)]);
-            self.attributes[i] = attribute;
-            true
-        })
     }
 }
