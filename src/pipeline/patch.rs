@@ -43,7 +43,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
     /// Whether a triangle can be drawn so.
     #[inline]
     pub(crate) fn takes(setup: &TriangleSetup, rows: &Rows) -> bool {
-        setup.straight && !setup.sliver && rows.are_simple()
+        setup.is_small && setup.straight && rows.are_simple()
     }
 
     #[inline(never)]
@@ -113,7 +113,7 @@ impl<W, D: DepthFormat> Row<'_, W, D> {
     #[inline]
     pub(super) fn draw<P: Copy>(mut self, mut at: P, next: impl Fn(P) -> P, word: impl Fn(P) -> W) {
         for (pixel, stored) in self.pixels.iter_mut().zip(self.depth) {
-            if D::test(stored, U1F31::from_bits(self.near_w)) {
+            if D::test_small(stored, U1F31::from_bits(self.near_w)) {
                 *pixel = word(at);
             }
             self.near_w = self.near_w.wrapping_add_signed(self.near_w_step);

@@ -68,6 +68,8 @@ pub(crate) struct TriangleSetup {
     pub(super) gray: bool,
     /// Whether planes hold values at corners: a sliver, or of very different distances.
     pub(super) sliver: bool,
+    /// Whether it is set up as a small one: no sliver, and its depth never below 1 of 2¹⁶.
+    pub(super) is_small: bool,
     /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
     pub(super) straight: bool,
     /// near/w with 31 fraction bits; for depth.
@@ -187,6 +189,7 @@ impl TriangleSetup {
             area: Reciprocal { mantissa: 0, zeros: 0 },
             gray: false,
             sliver: false,
+            is_small: false,
             straight: false,
             z: Plane::default(),
             q: Plane::default(),
@@ -199,6 +202,7 @@ impl TriangleSetup {
     #[inline]
     pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
+        self.is_small = true;
         self.longest = STRAIGHT;
         if needs.inputs == Inputs::None && !needs.depth {
             self.straight = true;
@@ -218,6 +222,7 @@ impl TriangleSetup {
 
     #[inline(never)]
     fn set_any_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+        self.is_small = false;
         let vertices = triangle.vertices;
         self.area = Reciprocal::precise(triangle.area);
         let slopes = self.slopes(triangle.area);
@@ -242,7 +247,7 @@ impl TriangleSetup {
         self.straight = match needs.straight {
             Straight::Always => true,
             Straight::Below(limit) => {
-                Bend::new(&edges(&self.corners), q).is_some_and(|bend| bend.is_straight(limit))
+                Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
             }
         };
         if !self.straight {

@@ -65,13 +65,14 @@ impl TriangleSetup {
             return false;
         }
         let q = triangle.vertices.map(|vertex| vertex.q.to_bits());
-        // Depth must not wrap where rounding takes it out of 0 … 2³¹.
-        if q.iter().any(|q| q.wrapping_sub(2048) > (1 << 31) - 4096) {
+        let (most, least) = (q[0], q[1].min(q[2]));
+        // Depth must not wrap where rounding takes it out of 0 … 2³¹, and is never 0.
+        if most > (1 << 31) - 2048 || least < (1 << 15) + 2048 || most - least >= 1 << 27 {
             return false;
         }
         let bend = match needs.straight {
             Straight::Below(limit) if needs.inputs != Inputs::None => {
-                let Some(bend) = Bend::new(&edges, q) else {
+                let Some(bend) = Bend::new(&edges, q, least) else {
                     return false;
                 };
                 if bend.is_straight(limit) { None } else { Some((bend, limit)) }
@@ -86,19 +87,11 @@ impl TriangleSetup {
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
-        let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
-        if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
-            return false;
-        }
         if needs.depth || bend.is_some() {
-            self.z = slopes.plane(q[0], rise);
+            self.z = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
             // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
-            if self
-                .z
-                .steps
-                .iter()
-                .any(|step| step.unsigned_abs() >> 27 != 0 || (step.unsigned_abs() >> 8) * largest > 1 << 25)
-            {
+            let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
+            if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
                 return false;
             }
         }

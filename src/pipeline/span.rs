@@ -74,7 +74,7 @@ impl<W: Copy> Pixels<W> for Run<'_, W> {
 }
 
 /// An edge from row to row.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Edge {
     /// Pixel centres left of the edge, with [`FRACTION`] bits: the fraction of a short edge, and none of a long one.
     x: i32,
@@ -144,11 +144,11 @@ pub(crate) struct Rows {
     left: Edge,
     right: Edge,
     row: i32,
-    /// Where the lower edge begins, and the end of the rows.
+    /// Where one edge takes another's place, and the end of the rows.
     knee: i32,
     end: i32,
-    /// The lower edge's ends.
-    lower: [[i32; 2]; 2],
+    /// The edge that begins at the knee.
+    lower: Edge,
     lower_is_right: bool,
     is_long: bool,
     /// Whether some of the triangle lies beyond the window's first or last column.
@@ -171,23 +171,33 @@ impl Rows {
         let Range { start, end } = window.columns;
         self.row = first_row(top[1]).max(window.rows.start);
         self.end = next_row.max(last_row).min(window.rows.end);
-        let (least, most) = (top[0].min(next[0]).min(last[0]), top[0].max(next[0]).max(last[0]));
-        if first_row(least) >= end || first_row(most) < start {
+        // A cut triangle may lie beyond all columns.
+        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
+        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
+        let xs = [top[0], next[0], last[0]];
+        if self.is_cut
+            && (xs.iter().all(|x| first_row(*x) >= end) || xs.iter().all(|x| first_row(*x) < start))
+        {
             self.end = self.row;
         }
         if self.row >= self.end {
             return;
         }
-        self.knee = next_row.min(last_row).min(self.end);
-        self.is_cut = least < start * 16 || most > end * 16;
-        self.is_long = most - least >= 1 << 9 || next[1].max(last[1]) - top[1] >= 1 << 9;
-        self.lower_is_right = next_row < last_row;
-        self.lower = if self.lower_is_right { [*next, *last] } else { [*last, *next] };
+        let wide = |from: i32, to: i32| to - from + (1 << 9);
+        self.is_long = (wide(top[0], next[0]) | wide(top[0], last[0]) | wide(next[0], last[0])) as u32 >> 10
+            != 0
+            || (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
         if next_row > self.row {
             self.right.set(self.is_long, top, next, self.row);
         }
         if last_row > self.row {
             self.left.set(self.is_long, top, last, self.row);
+        }
+        self.lower_is_right = next_row < last_row;
+        self.knee = next_row.min(last_row).min(self.end);
+        if self.knee < self.end {
+            let (from, to) = if self.lower_is_right { (next, last) } else { (last, next) };
+            self.lower.set(self.is_long, from, to, self.knee.max(self.row));
         }
     }
 
@@ -241,9 +251,8 @@ impl Rows {
         if self.row >= self.end {
             return false;
         }
-        let [top, bottom] = &self.lower;
         let edge = if self.lower_is_right { &mut self.right } else { &mut self.left };
-        edge.set(self.is_long, top, bottom, self.row);
+        *edge = self.lower;
         self.knee = self.end;
         true
     }

@@ -35,11 +35,10 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest.
+    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest, and the least.
     /// `None` if distances differ by a quarter.
     #[inline]
-    pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3]) -> Option<Self> {
-        let least = q1.min(q2);
+    pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], least: u32) -> Option<Self> {
         if q0 - least >= least >> 2 {
             return None;
         }
