@@ -399,7 +399,8 @@ impl TriangleSetup {
     ) -> Attribute {
         let (mut attribute, rise) = Attribute::between(at, scale_log2);
         if self.straight || mixed {
-            attribute.plane = self.plane(slopes, 0, rise);
+            let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
+            attribute.plane = self.plane(slopes, origin, rise);
             return attribute;
         }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];

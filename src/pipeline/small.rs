@@ -95,22 +95,9 @@ impl TriangleSetup {
                 return false;
             }
         }
-        let mut straight = true;
-        let fits = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let (mut attribute, rise) = Attribute::between(at, scale_log2);
-            if attribute.range >= 1 << 27 {
-                return false;
-            }
-            attribute.plane = slopes.plane(0, rise);
-            self.attributes[i] = attribute;
-            straight &= bend
-                .as_ref()
-                .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2));
-            true
-        });
-        if !fits {
+        let Some(straight) = self.set_linear(triangle, needs, &slopes, bend.as_ref()) else {
             return false;
-        }
+        };
         self.straight = straight;
         if let Some((bend, _)) = &bend
             && !straight
@@ -123,7 +110,34 @@ impl TriangleSetup {
         self.straight
     }
 
+    /// Makes attributes linear on the screen, and finds out whether that is good enough. `None` if one changes too much.
+    ///
+    /// Not inlined: what this needs of the stack need not be there when attributes are bent.
+    #[inline(never)]
+    fn set_linear(
+        &mut self,
+        triangle: &Oriented<'_>,
+        needs: &Needs,
+        slopes: &Slopes,
+        bend: Option<&(Bend, u32)>,
+    ) -> Option<bool> {
+        let mut straight = true;
+        let fits = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let (mut attribute, rise) = Attribute::between(at, scale_log2);
+            if attribute.range >= 1 << 27 {
+                return false;
+            }
+            attribute.plane = slopes.plane(attribute.origin(), rise);
+            self.attributes[i] = attribute;
+            straight = straight
+                && bend.is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2));
+            true
+        });
+        fits.then_some(straight)
+    }
+
     /// Bends attributes, of which planes are set, as much as perspective does.
+    #[inline(never)]
     fn set_bent(
         &mut self,
         triangle: &Oriented<'_>,
@@ -145,7 +159,8 @@ impl TriangleSetup {
             let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
             let yy = -mul_16_signed(down, q_down);
             // So much that the corners are what they were.
-            attribute.plane = slopes.plane(0, [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i))));
+            attribute.plane =
+                slopes.plane(attribute.origin(), [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i))));
             // From corner 0's pixel instead of corner 0.
             let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
             let [m, n] = slopes.pixel;
