@@ -70,7 +70,8 @@
 //!   are linear on the screen where u itself is not.
 //! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
 //! - **shade** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
-//!   divisions attributes follow the quadratic that has both ends and the slopes there.
+//!   divisions attributes follow the quadratic that has both ends and the slopes there. A small triangle is drawn at one go,
+//!   without any division: its attributes are linear on the screen, or one quadratic.
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.

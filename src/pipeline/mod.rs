@@ -3,6 +3,7 @@
 //! ```text
 //!            transform         clip            setup            span      shade
 //! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
+//!                                                               └──────▶ Patch ──▶
 //! ```
 
 mod attribute;

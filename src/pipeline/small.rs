@@ -4,6 +4,19 @@
 //! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a
 //! sum of products without rounding where rises have 19 bits, times 1/area with a relative error of 2⁻¹⁷. So after 64
 //! columns and rows a value is off by 1/1024 of its change over one pixel.
+//!
+//! # Bent triangles
+//!
+//! Where u is not linear enough it bends, as [`straight`](super::straight) has it, by the covariance of u and q divided by q.
+//! With q̄, the middle of the least and the greatest q, for q that is a quadratic, of which no pixel needs a division:
+//!
+//! ```text
+//! u = u₀ + V − (∇u·p)(∇q·p)/q̄,   p the way from corner 0, and V the plane that leaves the corners as they are
+//! ```
+//!
+//! q̄ is wrong by half of what q falls by, so at most ½·fall of the bend is: (length/4)·fall·(fall/2), of which 3/32 pixel are
+//! allowed. [`Patch`](super::Patch) draws a row of it as a straight line between its ends, or several, and may be wrong by as
+//! much again.
 
 use super::attribute::Attribute;
 use super::patch::STRAIGHT;
@@ -87,13 +100,12 @@ impl TriangleSetup {
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
-        if needs.depth || bend.is_some() {
-            self.z = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
-            // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
-            let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
-            if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
-                return false;
-            }
+        // Also where no depth is tested: pixels are not to depend on that.
+        self.z = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
+        let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
+        if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
+            return false;
         }
         let Some(straight) = self.set_linear(triangle, needs, &slopes, bend.as_ref()) else {
             return false;
