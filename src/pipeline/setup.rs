@@ -70,7 +70,7 @@ pub(crate) struct TriangleSetup {
     pub(super) sliver: bool,
     /// Whether it is set up as a small one: no sliver, and its depth never below 1 of 2¹⁶.
     pub(super) is_small: bool,
-    /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
+    /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
     pub(super) straight: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(super) z: Plane,

@@ -28,6 +28,7 @@ pub trait PixelFormat {
 
     /// The word of a grey: of three channels that are the same.
     #[inline]
+    #[must_use]
     fn gray(level: u8) -> Self::Word {
         Self::rgb888(level, level, level)
     }
