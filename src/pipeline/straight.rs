@@ -73,8 +73,11 @@ impl Bend {
         // 4 · error, at most a quarter of a rise.
         let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
         let error = (error >> 8) + 1;
+        let range = rises[0].max(rises[1]).max(rises[2]) as i32;
+        // Elsewhere u may change that much less along an edge.
+        let least = |i: usize| rises[i].saturating_sub(mul_16(range, self.falls[i]) as u32);
         error <= ((unit >> 8) * (limit >> 8)) >> 8
-            || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
+            || (0..3).any(|i| error * self.lengths[i] <= ((least(i) >> 8) * (limit >> 8)) >> 4)
     }
 
     /// |Δq| from corner 0 to 1 or 2 by the middle of the least and the greatest q, 16 fraction bits.
@@ -94,12 +97,9 @@ impl Bend {
     #[inline]
     pub(super) fn slopes(&self, steps: [i32; 2]) -> Option<[i32; 2]> {
         let most = self.falls[0].max(self.falls[1]);
-        // In 1/16 px.
-        let error = self
-            .lengths
-            .iter()
-            .zip(self.falls)
-            .all(|(length, fall)| length * ((fall * most) >> 16) <= 12 << 16);
+        // In 1/16 px. Of the longest edge: along that u changes the most.
+        let longest = self.lengths[0].max(self.lengths[1]).max(self.lengths[2]);
+        let error = longest * ((most * most) >> 16) <= 12 << 16;
         let least = (1u32 << 31) >> self.zeros;
         if !error || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
             return None;
