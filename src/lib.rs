@@ -70,7 +70,8 @@
 //!   are linear on the screen where u itself is not.
 //! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
 //! - **shade** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
-//!   divisions attributes follow the quadratic that has both ends and the slopes there.
+//!   divisions attributes follow the quadratic that has both ends and the slopes there. A small triangle is drawn at one go,
+//!   without any division: its attributes are linear on the screen, or one quadratic.
 //!
 //! A [`DisplayList`] cuts this in two behind **clip**: it keeps the screen vertices and the triangles that are seen, each vertex
 //! transformed and lit once, and sends them through the rest as often as there are bands.
@@ -131,7 +132,7 @@ pub use fixed;
 
 pub use math::{Pose, Quaternion, Turn, Vec3};
 pub use pipeline::{
-    Affine, Coloring, Cull, Exact, Inputs, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Span,
+    Affine, Coloring, Cull, Exact, Inputs, Pixels, Quality, QuarterPixel, RangeError, ScreenVertex, Shader,
     Stats, Varying, draw_triangle,
 };
 pub use scene::{

@@ -13,7 +13,7 @@ use std::cell::RefCell;
 use std::fmt;
 
 use common::generate::GUARD_BAND;
-use common::perspective::{Case, FAMILIES, RATIOS, any_case, case};
+use common::perspective::{Case, FAMILIES, RATIOS, any_case, case, mesh_case};
 use common::{Canvas, Drawn, Record, Recorder, Recording, cases, for_all};
 use fixel::{Affine, Cull, Depth16, Exact, Inputs, Quality, QuarterPixel};
 use proptest::prelude::*;
@@ -304,4 +304,25 @@ fn exact_holds_for_5_000_triangles_of_any_distances() {
 #[test]
 fn quarter_pixel_holds_for_5_000_triangles_of_any_distances() {
     hold_anything::<QuarterPixel>("QuarterPixel", 0.25);
+}
+
+/// Small triangles, which have loops of their own.
+fn hold_in_meshes<Q: Quality>(name: &str, bound: f64) {
+    let total = RefCell::new(Worst::default());
+    for_all(&format!("{name}, of a mesh"), 30_000, mesh_case(), |case| {
+        total.borrow_mut().join(measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?);
+        Ok(())
+    });
+    let total = total.into_inner();
+    println!("{name}, of a mesh: {total} over {} pixels", total.pixels);
+}
+
+#[test]
+fn exact_holds_for_30_000_triangles_of_a_mesh() {
+    hold_in_meshes::<Exact>("Exact", 0.02);
+}
+
+#[test]
+fn quarter_pixel_holds_for_30_000_triangles_of_a_mesh() {
+    hold_in_meshes::<QuarterPixel>("QuarterPixel", 0.25);
 }

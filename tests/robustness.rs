@@ -5,14 +5,15 @@ mod common;
 mod reference;
 
 use common::generate::{GUARD_BAND, strip};
+use common::perspective::mesh_case;
 use common::{Canvas, Counting, Drawn, Met, Record, Recorder, Recording, Strip, for_all, survives};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 use fixel::{
-    Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, Exact, Inputs, Material, Mesh, MeshError,
-    NoDepth, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Texture, Turn, Vec3,
-    Vertex, Wrap,
+    Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, Exact, Inputs, Lights, Material, Mesh,
+    MeshError, NoDepth, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Texture,
+    Turn, Vec3, Vertex, Wrap,
 };
 use proptest::prelude::*;
 use reference::{Corner, Triangle};
@@ -243,6 +244,62 @@ fn materials_on_triangles_of_any_bits_10_000_cases() {
             _ => on_all_formats(target, &vertices, &material.affine()),
         }
     });
+}
+
+#[test]
+fn small_triangles_are_the_same_in_bands_of_one_row_20_000_cases() {
+    let texels: Vec<u16> = (0..=u16::MAX).collect();
+    let lights = Lights::new([255; 3], &[]);
+    let cases = (mesh_case(), 0..6_u8, 0..3_u8, any::<bool>());
+    for_all("small triangles in bands", 20_000, cases, |(case, kind, quality, gray)| {
+        let texture = Texture::new(&texels[..1 << 12], 6, 6);
+        let clamped = texture.wrap(Wrap::Clamp);
+        let material = match kind {
+            0 => Material::flat(Rgb565::MAGENTA),
+            1 => Material::gouraud(),
+            2 => Material::textured(&texture),
+            3 => Material::textured(&clamped),
+            4 => Material::textured(&texture).lit(&lights),
+            _ => Material::textured(&clamped).lit(&lights),
+        };
+        let mut vertices = case.triangle.0.map(common::screen_vertex);
+        if gray {
+            for vertex in &mut vertices {
+                vertex.color = [vertex.color[0]; 3];
+            }
+        }
+        match quality {
+            0 => in_bands(case.strip, &vertices, &material),
+            1 => in_bands(case.strip, &vertices, &material.exact()),
+            _ => in_bands(case.strip, &vertices, &material.affine()),
+        }
+    });
+}
+
+/// The whole strip, with and without depth, against every row for itself.
+fn in_bands<Q: Quality>(
+    strip: Strip,
+    vertices: &[ScreenVertex; 3],
+    material: &Material<'_, Q>,
+) -> Result<(), TestCaseError> {
+    on_all_formats((strip, strip.row), vertices, material)?;
+    let target = |row: u32, height: u32| (Strip::new(strip.width, height, row), row);
+    let whole = draw::<Rgb565, Depth16, _>(
+        target(strip.row, strip.height),
+        (0x1234, 0),
+        vertices,
+        Cull::None,
+        material,
+    );
+    let width = strip.width as usize;
+    for i in 0..strip.height {
+        let row =
+            draw::<Rgb565, Depth16, _>(target(strip.row + i, 1), (0x1234, 0), vertices, Cull::None, material);
+        let from = i as usize * width;
+        prop_assert_eq!(&row.1[..width], &whole.1[from..from + width]);
+        prop_assert_eq!(&row.2[..width], &whole.2[from..from + width]);
+    }
+    Ok(())
 }
 
 // The strategies below are boxed: nested ones of so many parts would not fit a test's stack otherwise.

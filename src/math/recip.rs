@@ -105,13 +105,13 @@ pub(crate) fn short(m: u32) -> u32 {
 /// [`short`] of a divisor's mantissa, and the divisor's leading zeros: 1/d = the former · 2^(zeros − 48).
 #[inline]
 pub(crate) fn short_of(divisor: u32) -> (u32, u32) {
-    let zeros = divisor.leading_zeros();
-    (short(divisor << zeros), zeros)
+    let (m, zeros) = normalised(divisor.max(1));
+    (short(m), zeros)
 }
 
 /// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 and a divisor of 1 … 511, of which each has a place in
 /// the table: relative error below 2⁻²⁰, and rounded to nearest.
-#[inline(never)]
+#[inline]
 pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
     let (m, zeros) = normalised((divisor as u32) << 23);
     let reciprocal = (TABLE[(m >> 22) as usize & (INTERVALS - 1)] + (1 << 9)) >> 10;

@@ -7,9 +7,11 @@ use crate::num::{mul_17, wide};
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
-    /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a straight triangle or a sliver in `Exact`,
-    /// u − u₀ in I16F16.
+    /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a sliver in `Exact` u − u₀ in I16F16, and of a straight
+    /// triangle u − `least`.
     pub(super) plane: Plane,
+    /// Of a bent triangle: what is to be added x², xy and y² times, x and y being the way from corner 0's pixel.
+    pub(super) bend: [i32; 3],
     /// 1 … 31.
     pub(super) shift: i32,
     /// The range of u at the corners, I16F16: the least, how much less than u₀ that is, and how much more there may be.
@@ -21,13 +23,30 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
+    /// What a straight triangle's plane begins with at corner 0.
+    #[inline]
+    pub(super) fn origin(&self) -> u32 {
+        0u32.wrapping_sub(self.low as u32)
+    }
+
     /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
     #[inline]
     pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
         let range = high.wrapping_sub(low) as u32;
-        (Self { plane: Plane::default(), shift: 0, least: at[0] + low, low, range, scale_log2 }, rise)
+        (
+            Self {
+                plane: Plane::default(),
+                bend: [0; 3],
+                shift: 0,
+                least: at[0] + low,
+                low,
+                range,
+                scale_log2,
+            },
+            rise,
+        )
     }
 
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
@@ -60,7 +79,7 @@ impl Attribute {
         let product = mul_17(step, reciprocal);
         let down = self.shift - zeros as i32;
         let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
-        self.along((self.offset(value, reciprocal, zeros) as u32, step), steps)
+        self.along((self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step), steps)
     }
 
     #[cold]
@@ -89,23 +108,22 @@ impl Attribute {
     /// outside the corners' range, even where rounding takes the plane there.
     #[inline]
     pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
-        let (first, last) = (value as i32, (value as i32).wrapping_add(step.wrapping_mul(steps)));
-        let is_in_range = |offset: i32| offset.wrapping_sub(self.low) as u32 <= self.range;
-        if is_in_range(first) && is_in_range(last) {
-            return (
-                self.least.wrapping_add(first.wrapping_sub(self.low)) << self.scale_log2,
-                step << self.scale_log2,
-            );
+        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
+        if first <= self.range && last <= self.range {
+            return (self.least.wrapping_add_unsigned(first) << self.scale_log2, step << self.scale_log2);
         }
-        self.along_border(first, last, steps)
+        self.along_border(first as i32, last as i32, steps)
     }
 
     #[cold]
     #[inline(never)]
     fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let high = self.low.wrapping_add_unsigned(self.range);
-        let rise = last.clamp(self.low, high) - first.clamp(self.low, high);
-        (self.finish(first), step_of(rise, inverse(steps.max(1) as usize)) << self.scale_log2)
+        let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
+        let rise = last - first;
+        (
+            (self.least + first) << self.scale_log2,
+            step_of(rise, inverse(steps.max(1) as usize)) << self.scale_log2,
+        )
     }
 }
 
@@ -140,4 +158,10 @@ pub(super) fn short_inverse(steps: i32) -> u32 {
 fn step_of(rise: i32, inverse: i32) -> i32 {
     let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
     if rise < 0 { -size } else { size }
+}
+
+/// Of a product rounded down: one more if it is negative.
+#[inline]
+pub(super) fn towards_zero(product: i32) -> i32 {
+    product - (product >> 31)
 }

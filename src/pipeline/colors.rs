@@ -5,8 +5,9 @@
 //! most. A single channel keeps its 16 fraction bits.
 
 use super::fill::{Fill, in_pairs, packed_from, packed_step, plus, shifted, uv_in_units};
+use super::patch::Row;
 use crate::scene::Texture;
-use crate::target::PixelFormat;
+use crate::target::{DepthFormat, PixelFormat};
 use core::marker::PhantomData;
 
 /// `M` channels in as few words as they need; places, steps and bends alike.
@@ -25,6 +26,11 @@ pub(crate) trait Channels<const M: usize>: Copy {
 
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
+
+    #[inline]
+    fn word<F: PixelFormat>(self) -> F::Word {
+        color::<F>(self.rgb())
+    }
 }
 
 /// One channel for all three.
@@ -49,6 +55,11 @@ impl Channels<1> for Gray {
     #[inline]
     fn rgb(self) -> [u32; 3] {
         [self.0 as u32 >> 16; 3]
+    }
+
+    #[inline]
+    fn word<F: PixelFormat>(self) -> F::Word {
+        F::gray((self.0 >> 16) as u8)
     }
 }
 
@@ -100,7 +111,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn pixel(&self, at: [i32; M]) -> F::Word {
-        color::<F>(C::pack(at.map(|channel| channel >> C::DROPPED)).rgb())
+        C::pack(at.map(|channel| channel >> C::DROPPED)).word::<F>()
     }
 
     #[inline]
@@ -109,7 +120,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
             let mut packed = C::pack(at.map(|channel| channel >> C::DROPPED));
             for pixel in pixels {
-                *pixel = color::<F>(packed.rgb());
+                *pixel = packed.word::<F>();
                 packed = packed.plus(packed_step);
             }
         };
@@ -125,9 +136,16 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 
     #[inline]
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
+        let step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
+        let first = C::pack(at.map(|channel| channel >> C::DROPPED));
+        row.draw(first, |at| at.plus(step), |at| at.word::<F>());
+    }
+
+    #[inline]
     fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
         let draw = |pixel: &mut F::Word, [at, step]: &mut [C; 2]| {
-            *pixel = color::<F>(at.rgb());
+            *pixel = at.word::<F>();
             *at = at.plus(*step);
         };
         in_pairs(pixels, [at, step].map(C::pack), C::pack(bend), draw, |[_, step], bend| {
@@ -195,6 +213,33 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     }
 
     #[inline]
+    fn short<D: DepthFormat, const M: usize>(
+        &self,
+        row: Row<'_, F::Word, D>,
+        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
+        (light, light_step): ([i32; M], [i32; M]),
+    ) where
+        C: Channels<M>,
+    {
+        let light_step = C::pack(light_step.map(|step| shifted(step, C::DROPPED)));
+        let light = C::pack(light.map(|channel| channel >> C::DROPPED));
+        if !self.is_packed {
+            return row.draw(
+                ([u, v], light),
+                |([u, v], light)| ([u.wrapping_add(u_step), v.wrapping_add(v_step)], light.plus(light_step)),
+                |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
+            );
+        }
+        let [a, b] = self.texture.log2();
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        row.draw(
+            (packed_from([u >> a, v >> b], u_step), light),
+            |(packed, light)| (packed.wrapping_add(step), light.plus(light_step)),
+            |(packed, light)| lit::<F>(self.texture.fetch_packed(packed), light.rgb()),
+        );
+    }
+
+    #[inline]
     fn long<const M: usize>(
         &self,
         pixels: &mut [F::Word],
@@ -253,6 +298,16 @@ macro_rules! fill_of_lit_texels {
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
                 self.long(pixels, ([u, v], [u_step, v_step]), (light, light_step));
+            }
+
+            #[inline]
+            fn row<D: DepthFormat>(
+                &self,
+                row: Row<'_, F::Word, D>,
+                [u, v, light @ ..]: [i32; $n],
+                [u_step, v_step, light_step @ ..]: [i32; $n],
+            ) {
+                self.short(row, ([u, v], [u_step, v_step]), (light, light_step));
             }
 
             #[inline]

@@ -15,9 +15,10 @@
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::draw::needs;
-use super::setup::{Cull, Needs, Oriented, TriangleSetup};
+use super::patch::{Patch, STRAIGHT};
+use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::Shader;
-use super::span::{Rows, Span, Window};
+use super::span::{Rows, Run, Span, Window};
 use super::transform::ToClip;
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
@@ -79,16 +80,25 @@ where
         is_orthographic: bool,
         shader: &S,
     ) -> Result<(), T::Error> {
-        match Oriented::new(vertices, cull) {
-            Some(triangle) if !self.shown.is_empty() && self.shown.touches(&triangle) => {
-                let needs: Needs = needs::<F, NoDepth, S>(shader, is_orthographic);
-                self.setup.set(&triangle, &needs);
-            }
-            _ => return Ok(()),
-        }
+        let Some(triangle) = Oriented::new(vertices, cull) else {
+            return Ok(());
+        };
         let Self { target, shown, window, run, setup, rows } = self;
+        setup.corners = triangle.vertices.map(position);
+        rows.start(&setup.corners, window);
+        let [[a, _], [b, _], [c, _]] = setup.corners;
+        let [left, right] = Window::centers(a, b, c);
+        if rows.are_none() || left >= shown.columns.end || right <= shown.columns.start {
+            return Ok(());
+        }
+        let needs: Needs = needs::<F, NoDepth, S>(shader, is_orthographic);
+        let fits = RUN > STRAIGHT as usize;
+        setup.set(&triangle, &needs, fits && rows.are_simple());
+        if fits && Patch::<F::Word, NoDepth>::takes(setup, rows) {
+            return self.draw_small(shader);
+        }
         let mut result = Ok(());
-        setup.rows(rows, window, |y, start, end| {
+        rows.each(window, |y, start, end| {
             let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
             if seen.is_empty() || result.is_err() {
                 return;
@@ -98,6 +108,29 @@ where
             result = target.fill_contiguous(&area, Colors::new(shader, run, span, end, seen));
         });
         result
+    }
+
+    /// Draws the small triangle that was set up: a row at a time, which fits a run.
+    #[inline(never)]
+    fn draw_small<S: Shader<F>>(&mut self, shader: &S) -> Result<(), T::Error> {
+        let Self { target, shown, run, setup, rows, .. } = self;
+        loop {
+            let (y, mut row) = (rows.row(), rows.first());
+            let Some((start, end)) = rows.next() else {
+                return Ok(());
+            };
+            let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
+            if seen.is_empty() {
+                continue;
+            }
+            let first = (start as usize).wrapping_neg();
+            let (rows, pixels) = (&mut row, &mut run[..]);
+            shader.paint(Patch::<F::Word, NoDepth> { setup, rows, first, width: 0, pixels, depth: &mut [] });
+            let words = run.get((seen.start - start) as usize..(seen.end - start) as usize);
+            let area = Rectangle::new(Point::new(seen.start, y), Size::new(seen.len() as u32, 1));
+            let colors = words.unwrap_or_default().iter().map(|&word| F::decode(word));
+            target.fill_contiguous(&area, colors)?;
+        }
     }
 }
 
@@ -133,10 +166,10 @@ impl<'a, F: PixelFormat, S: Shader<F>, const RUN: usize> Colors<'a, F, S, RUN> {
         end: i32,
         seen: Range<i32>,
     ) -> Self {
-        while span.x() + RUN as i32 <= seen.start {
+        while span.x + RUN as i32 <= seen.start {
             span = span.ahead(RUN);
         }
-        let skipped = (seen.start - span.x()) as usize;
+        let skipped = (seen.start - span.x) as usize;
         let mut colors = Self { run, at: 0, ready: 0, span, end, seen_end: seen.end, shader };
         if skipped > 0 {
             colors.shade();
@@ -148,7 +181,7 @@ impl<'a, F: PixelFormat, S: Shader<F>, const RUN: usize> Colors<'a, F, S, RUN> {
     /// The next run, some of which is seen.
     #[inline]
     fn shade(&mut self) {
-        let x = self.span.x();
+        let x = self.span.x;
         let count = RUN.min((self.end - x) as usize);
         let span = self.span;
         shade(self.shader, &span, count, self.run);
@@ -166,7 +199,7 @@ fn shade<F: PixelFormat, S: Shader<F>, const RUN: usize>(
     run: &mut [F::Word; RUN],
 ) {
     if let Some(pixels) = run.get_mut(..count) {
-        shader.span(span, pixels);
+        shader.paint(Run { span: *span, pixels });
     }
 }
 
@@ -176,7 +209,7 @@ impl<F: PixelFormat, S: Shader<F>, const RUN: usize> Iterator for Colors<'_, F, 
     #[inline]
     fn next(&mut self) -> Option<F::Color> {
         if self.at == self.ready {
-            if self.span.x() >= self.seen_end {
+            if self.span.x >= self.seen_end {
                 return None;
             }
             self.shade();
@@ -188,7 +221,7 @@ impl<F: PixelFormat, S: Shader<F>, const RUN: usize> Iterator for Colors<'_, F, 
 
     #[inline]
     fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.ready - self.at + (self.seen_end - self.span.x()).max(0) as usize;
+        let left = self.ready - self.at + (self.seen_end - self.span.x).max(0) as usize;
         (left, Some(left))
     }
 }

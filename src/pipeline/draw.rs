@@ -2,7 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
-use super::setup::{Cull, Needs, Oriented, TriangleSetup};
+use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
@@ -17,7 +17,7 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
 const NOBODY: u32 = u32::MAX;
-const HINTS: usize = 16;
+const HINTS: usize = 64;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F, D, S>(
@@ -74,7 +74,7 @@ fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
 struct Cache {
     vertices: [ScreenVertex; MOST_CORNERS],
     owners: [u32; CACHED],
-    /// Where a vertex is found most often, by the lowest bits of its index.
+    /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
     hints: [u8; HINTS],
     oldest: usize,
 }
@@ -116,8 +116,7 @@ impl Placer<'_> {
         Some(slots)
     }
 
-    /// Looks for a vertex everywhere, or puts it in the place of the oldest, but none of this triangle's `slots`; `None` if it has
-    /// to be cut off.
+    /// Puts a vertex in the place of the oldest, but none of this triangle's `slots`; `None` if it has to be cut off.
     #[inline(never)]
     fn place_vertex(
         &self,
@@ -127,9 +126,6 @@ impl Placer<'_> {
         stats: &mut impl Count,
     ) -> Option<u8> {
         let owner = u32::from(index);
-        if let Some(slot) = cache.owners.iter().position(|other| *other == owner) {
-            return Some(slot as u8);
-        }
         stats.count(|stats| &mut stats.transformed);
         let mut slot = cache.oldest % CACHED;
         while slots.contains(&(slot as u8)) {
@@ -303,11 +299,13 @@ where
 
     #[inline(never)]
     fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        if !self.window.touches(triangle) {
+        self.setup.corners = triangle.vertices.map(position);
+        self.rows.start(&self.setup.corners, &self.window);
+        if self.rows.are_none() {
             return stats.count(|stats| &mut stats.out_of_sight);
         }
         stats.count(|stats| &mut stats.drawn);
-        self.setup.set(triangle, &self.needs);
+        self.setup.set(triangle, &self.needs, self.rows.are_simple());
         self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
     }
 }

@@ -1,12 +1,13 @@
-//! Fills: runs of pixels along which attributes are linear.
+//! Fills: rows of pixels along which attributes are linear.
 
+use super::patch::Row;
 use super::walk::LONGEST;
 use crate::scene::Texture;
-use crate::target::PixelFormat;
+use crate::target::{DepthFormat, PixelFormat};
 use core::marker::PhantomData;
 
 /// How the pixels of a run get their words from `N` attributes in I16F16.
-pub(crate) trait Fill<const N: usize> {
+pub trait Fill<const N: usize> {
     type Word;
 
     /// The longest bent run that is exact enough.
@@ -31,6 +32,13 @@ pub(crate) trait Fill<const N: usize> {
             *pixel = self.pixel(at);
             at = plus(at, step);
         }
+    }
+
+    /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further.
+    #[inline]
+    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]) {
+        let next = |at: [i32; N]| core::array::from_fn(|i| at[i].wrapping_add(step[i]));
+        row.draw(at, next, |at| self.pixel(at));
     }
 
     /// At most `longest` pixels and one side by side, the first at `at`, each `step` further, `bend` being added to that
@@ -74,7 +82,13 @@ pub(super) fn plus<const N: usize>(a: [i32; N], b: [i32; N]) -> [i32; N] {
 }
 
 /// Pixel by pixel.
-pub(crate) struct Each<W, C>(pub(crate) C, pub(crate) PhantomData<fn() -> W>);
+pub(crate) struct Each<W, C>(C, PhantomData<fn() -> W>);
+
+impl<W, C> Each<W, C> {
+    pub(crate) const fn new(color: C) -> Self {
+        Self(color, PhantomData)
+    }
+}
 
 impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
     type Word = W;
@@ -200,6 +214,22 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             self.run::<false>(block, packed_from([u >> a, v >> b], u_step), step, 0);
             (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
         }
+    }
+
+    #[inline]
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
+        if !self.is_packed {
+            let next = |[u, v]: [i32; 2]| [u.wrapping_add(u_step), v.wrapping_add(v_step)];
+            return row.draw([u, v], next, |at| self.pixel(at));
+        }
+        let [a, b] = self.texture.log2();
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let first = packed_from([u >> a, v >> b], u_step);
+        row.draw(
+            first,
+            |packed| packed.wrapping_add(step),
+            |packed| F::rgb565(self.texture.fetch_packed(packed)),
+        );
     }
 
     #[inline]

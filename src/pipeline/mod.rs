@@ -3,6 +3,7 @@
 //! ```text
 //!            transform         clip            setup            span      shade
 //! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
+//!                                                               └──────▶ Patch ──▶
 //! ```
 //!
 //! [`draw`] takes a mesh through all of it; [`record`] as far as to screen vertices, which a display list keeps.
@@ -14,6 +15,7 @@ mod colors;
 mod direct;
 mod draw;
 mod fill;
+mod patch;
 mod record;
 mod setup;
 mod shade;
@@ -31,11 +33,11 @@ pub(crate) use direct::{Direct, Quad, Side};
 pub use draw::{RangeError, draw_triangle};
 pub(crate) use draw::{Raster, draw, project};
 pub(crate) use fill::Texels;
+pub(crate) use patch::Patch;
 pub(crate) use record::{Full, ListTriangle, ListVertex, ListView, MOST_SLOTS, ROWS_LOG2, Style, record};
 pub use setup::Cull;
 pub(crate) use setup::TriangleSetup;
-pub use shade::{Affine, Exact, Inputs, Quality, QuarterPixel, Shader, Varying};
-pub use span::Span;
-pub(crate) use span::{Rows, Window};
+pub use shade::{Affine, Exact, Inputs, Pixels, Quality, QuarterPixel, Shader, Varying};
+pub(crate) use span::{Rows, Run, Span, Window};
 pub(crate) use stats::Count;
 pub use stats::Stats;

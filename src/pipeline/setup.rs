@@ -36,6 +36,7 @@
 
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
+use super::patch::STRAIGHT;
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::Reciprocal;
@@ -86,18 +87,22 @@ pub(crate) struct TriangleSetup {
     pub(super) gray: bool,
     /// Whether planes hold values at corners: a sliver, or of very different distances.
     pub(super) sliver: bool,
-    /// Whether attributes are linear on the screen, or nearly: their planes hold them as they are.
+    /// Whether it is set up as a small one: no sliver, and its depth never below 1 of 2¹⁶.
+    pub(super) is_small: bool,
+    /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
     pub(super) straight: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(super) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(super) q: Plane,
+    /// Of a bent triangle: how many steps along a row attributes are nearly linear.
+    pub(super) longest: i32,
     /// The least q of the corners.
     pub(super) q_min: u32,
     pub(super) attributes: [Attribute; ATTRIBUTES],
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 240);
+const _: () = assert!(size_of::<TriangleSetup>() <= 304);
 
 /// A linear function on the screen, in integers that wrap.
 #[derive(Clone, Copy, Debug, Default)]
@@ -200,19 +205,23 @@ impl TriangleSetup {
             area: Reciprocal { mantissa: 0, zeros: 0 },
             gray: false,
             sliver: false,
+            is_small: false,
             straight: false,
             z: Plane::default(),
             q: Plane::default(),
+            longest: 0,
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
     }
 
     #[inline]
-    pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        self.corners = triangle.vertices.map(position);
+    pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
+        self.is_small = true;
+        self.longest = STRAIGHT;
         if needs.inputs == Inputs::None && !needs.depth {
+            self.straight = true;
             return;
         }
         if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
@@ -222,13 +231,14 @@ impl TriangleSetup {
             };
             self.gray = triangle.vertices.into_iter().all(is_gray);
         }
-        if !self.set_small_planes(triangle, needs) {
+        if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
         }
     }
 
     #[inline(never)]
     fn set_any_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+        self.is_small = false;
         let vertices = triangle.vertices;
         self.area = Reciprocal::precise(triangle.area);
         let slopes = self.slopes(triangle.area);
@@ -247,12 +257,13 @@ impl TriangleSetup {
             self.z = self.plane(&slopes, z[0], [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32));
         }
         if needs.inputs == Inputs::None {
+            self.straight = true;
             return;
         }
         self.straight = match needs.straight {
             Straight::Always => true,
             Straight::Below(limit) => {
-                Bend::new(&edges(&self.corners), q).is_some_and(|bend| bend.is_straight(limit))
+                Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
             }
         };
         if !self.straight {
@@ -404,7 +415,8 @@ impl TriangleSetup {
     ) -> Attribute {
         let (mut attribute, rise) = Attribute::between(at, scale_log2);
         if self.straight || mixed {
-            attribute.plane = self.plane(slopes, 0, rise);
+            let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
+            attribute.plane = self.plane(slopes, origin, rise);
             return attribute;
         }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
@@ -424,6 +436,6 @@ pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
     [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
 }
 
-fn position(vertex: &ScreenVertex) -> [i32; 2] {
+pub(super) fn position(vertex: &ScreenVertex) -> [i32; 2] {
     [vertex.x.to_bits().into(), vertex.y.to_bits().into()]
 }

@@ -1,8 +1,8 @@
 //! Stage 5: what a pixel shows. How attributes get to it along a row is in [`walk`](super::walk).
 
 use super::color::Coloring;
+use super::fill::{Each, Fill};
 use super::setup::Cull;
-use super::span::Span;
 use super::straight::Straight;
 use crate::math::Pose;
 use crate::num::I16F16;
@@ -49,7 +49,7 @@ impl Quality for Affine {
     const EVERY_PIXEL: bool = false;
 }
 
-mod sealed {
+pub(super) mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Exact {}
     impl Sealed for super::QuarterPixel {}
@@ -136,29 +136,47 @@ pub trait Shader<F: PixelFormat> {
         0
     }
 
-    /// Draws the visible pixels of a span. The default calls [`Shader::color`] for each.
-    fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
+    /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
+    /// ways to colour a pixel may do so here, once for many.
+    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
+        let gray = pixels.is_gray();
         match self.inputs() {
-            Inputs::None => pixels.fill(self.color(&Varying::default())),
+            Inputs::None => pixels.fill_evenly(self.color(&Varying::default())),
             Inputs::Uv => {
-                span.shade::<Self::Quality, _, 2>(pixels, |[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])))
+                pixels.shade::<Self::Quality, 2>(|[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])));
             }
-            Inputs::Color if span.setup.gray => {
-                span.shade::<Self::Quality, _, 1>(pixels, |[c]| self.color(&Varying::new([0, 0, c, c, c])));
+            Inputs::Color if gray => {
+                pixels.shade::<Self::Quality, 1>(|[c]| self.color(&Varying::new([0, 0, c, c, c])));
             }
             Inputs::Color => {
-                span.shade::<Self::Quality, _, 3>(pixels, |[r, g, b]| {
-                    self.color(&Varying::new([0, 0, r, g, b]))
-                });
+                pixels.shade::<Self::Quality, 3>(|[r, g, b]| self.color(&Varying::new([0, 0, r, g, b])));
             }
-            Inputs::UvColor if span.setup.gray => {
-                span.shade::<Self::Quality, _, 3>(pixels, |[u, v, c]| {
-                    self.color(&Varying::new([u, v, c, c, c]))
-                });
+            Inputs::UvColor if gray => {
+                pixels.shade::<Self::Quality, 3>(|[u, v, c]| self.color(&Varying::new([u, v, c, c, c])));
             }
             Inputs::UvColor => {
-                span.shade::<Self::Quality, _, 5>(pixels, |all| self.color(&Varying::new(all)))
+                pixels.shade::<Self::Quality, 5>(|all| self.color(&Varying::new(all)));
             }
         }
+    }
+}
+
+/// Pixels side by side, or all of a small triangle, for a [`Shader`] to fill: it says once with what.
+pub trait Pixels<W>: sealed::Sealed + Sized {
+    /// Whether the triangle's colours are greys: then there is one attribute for all three channels.
+    fn is_gray(&self) -> bool;
+
+    /// Fills them with one word.
+    fn fill_evenly(self, word: W);
+
+    #[doc(hidden)]
+    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
+
+    /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
+    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of attributes that there are
+    /// not, nothing is filled.
+    #[inline]
+    fn shade<Q: Quality, const N: usize>(self, color: impl Fn([i32; N]) -> W) {
+        self.fill::<Q, N, _>(&Each::new(color));
     }
 }

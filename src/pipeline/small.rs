@@ -4,13 +4,27 @@
 //! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a
 //! sum of products without rounding where rises have 19 bits, times 1/area with a relative error of 2⁻¹⁷. So after 64
 //! columns and rows a value is off by 1/1024 of its change over one pixel.
+//!
+//! # Bent triangles
+//!
+//! Where u is not linear enough it bends, as [`straight`](super::straight) has it, by the covariance of u and q divided by q.
+//! With q̄, the middle of the least and the greatest q, for q that is a quadratic, of which no pixel needs a division:
+//!
+//! ```text
+//! u = u₀ + V − (∇u·p)(∇q·p)/q̄,   p the way from corner 0, and V the plane that leaves the corners as they are
+//! ```
+//!
+//! q̄ is wrong by half of what q falls by, so at most ½·fall of the bend is: (length/4)·fall·(fall/2), of which 3/32 pixel are
+//! allowed. [`Patch`](super::Patch) draws a row of it as a straight line between its ends, or several, and may be wrong by as
+//! much again.
 
 use super::attribute::Attribute;
+use super::patch::STRAIGHT;
 use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short_of;
-use crate::num::mul_17;
+use crate::num::{mul_16, mul_16_signed, mul_17};
 
 /// What all planes of a triangle have in common.
 struct Slopes {
@@ -56,7 +70,7 @@ impl Slopes {
 impl TriangleSetup {
     /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
     #[inline(never)]
-    pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) -> bool {
+    pub(super) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) -> bool {
         let edges = edges(&self.corners);
         let largest = edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
         // At most 64 pixels across, and at least a quarter thick: a step of 2²⁷ over that still fits.
@@ -64,13 +78,14 @@ impl TriangleSetup {
             return false;
         }
         let q = triangle.vertices.map(|vertex| vertex.q.to_bits());
-        // Depth must not wrap where rounding takes it out of 0 … 2³¹.
-        if q.iter().any(|q| q.wrapping_sub(2048) > (1 << 31) - 4096) {
+        let (most, least) = (q[0], q[1].min(q[2]));
+        // Depth must not wrap where rounding takes it out of 0 … 2³¹, and is never 0.
+        if most > (1 << 31) - 2048 || least < (1 << 15) + 2048 || most - least >= 1 << 27 {
             return false;
         }
         let bend = match needs.straight {
             Straight::Below(limit) if needs.inputs != Inputs::None => {
-                let Some(bend) = Bend::new(&edges, q) else {
+                let Some(bend) = Bend::new(&edges, q, least) else {
                     return false;
                 };
                 if bend.is_straight(limit) { None } else { Some((bend, limit)) }
@@ -85,58 +100,93 @@ impl TriangleSetup {
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
-        if needs.depth {
-            let rise = [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32);
-            if rise.iter().any(|rise| rise.unsigned_abs() >= 1 << 27) {
-                return false;
-            }
-            self.z = slopes.plane(q[0], rise);
-            // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
-            if self
-                .z
-                .steps
-                .iter()
-                .any(|step| step.unsigned_abs() >> 27 != 0 || (step.unsigned_abs() >> 8) * largest > 1 << 25)
-            {
-                return false;
-            }
+        // Also where no depth is tested: pixels are not to depend on that.
+        self.z = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
+        let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
+        if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
+            return false;
         }
-        self.straight = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let (mut attribute, rise) = Attribute::between(at, scale_log2);
-            if attribute.range >= 1 << 27 {
-                return false;
-            }
-            attribute.plane = slopes.plane(0, rise);
-            self.attributes[i] = attribute;
-            bend.as_ref()
-                .is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2))
-        });
-        // Steps of q and (u − u₀)·q, which take all of 32 bits, need triangles of two pixels' thickness.
+        let Some(straight) = self.set_linear(triangle, needs, &slopes, bend.as_ref()) else {
+            return false;
+        };
+        self.straight = straight;
+        if let Some((bend, _)) = &bend
+            && !straight
+            && simple
+            && !needs.every_pixel
+            && let Some(slopes_of_q) = bend.slopes(self.z.steps)
+        {
+            self.set_bent(triangle, needs, &slopes, bend, slopes_of_q);
+        }
         self.straight
-            || !needs.every_pixel
-                && largest * 32 <= triangle.area
-                && self.set_divided(triangle, needs, &slopes, q)
     }
 
-    /// Sets the planes of q and of attributes that are to be divided by it. Distances differ by less than a quarter, so that 17
-    /// bits of q are enough.
-    fn set_divided(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes, q: [u32; 3]) -> bool {
-        let up = q[0].leading_zeros() - 1;
-        let q = q.map(|q| q << up);
-        self.q_min = q[1].min(q[2]);
-        self.q = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+    /// Makes attributes linear on the screen, and finds out whether that is good enough. `None` if one changes too much.
+    ///
+    /// Not inlined: what this needs of the stack need not be there when attributes are bent.
+    #[inline(never)]
+    fn set_linear(
+        &mut self,
+        triangle: &Oriented<'_>,
+        needs: &Needs,
+        slopes: &Slopes,
+        bend: Option<&(Bend, u32)>,
+    ) -> Option<bool> {
+        let mut straight = true;
+        let fits = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             let (mut attribute, rise) = Attribute::between(at, scale_log2);
             if attribute.range >= 1 << 27 {
                 return false;
             }
-            // 29 bits times 17, of which the upper 30 are kept.
-            let up = (attribute.range | 1).leading_zeros() - 3;
-            let product = |i: usize| mul_17(rise[i] << up, q[i + 1] >> 14);
-            attribute.shift = 2 + up as i32;
-            attribute.plane = slopes.plane(0, [product(0), product(1)]);
+            attribute.plane = slopes.plane(attribute.origin(), rise);
+            self.attributes[i] = attribute;
+            straight = straight
+                && bend.is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2));
+            true
+        });
+        fits.then_some(straight)
+    }
+
+    /// Bends attributes, of which planes are set, as much as perspective does.
+    #[inline(never)]
+    fn set_bent(
+        &mut self,
+        triangle: &Oriented<'_>,
+        needs: &Needs,
+        slopes: &Slopes,
+        bend: &Bend,
+        [q_right, q_down]: [i32; 2],
+    ) {
+        self.straight = true;
+        self.longest = STRAIGHT / 2;
+        while (self.longest * self.longest) * q_right.abs() > 3 << 13 {
+            self.longest >>= 1;
+        }
+        let [x, y] = slopes.to_center;
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let (mut attribute, rise) = Attribute::between(at, scale_log2);
+            let [right, down] = self.attributes[i].plane.steps;
+            let xx = -mul_16_signed(right, q_right);
+            let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
+            let yy = -mul_16_signed(down, q_down);
+            // So much that the corners are what they were.
+            attribute.plane =
+                slopes.plane(attribute.origin(), [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i))));
+            // From corner 0's pixel instead of corner 0.
+            let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
+            let [m, n] = slopes.pixel;
+            attribute.plane.origin = attribute
+                .plane
+                .origin
+                .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3)
+                .wrapping_sub(m.wrapping_mul(more[0]).wrapping_add(n.wrapping_mul(more[1])) as u32);
+            for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
+                *step = step.wrapping_add(more);
+            }
+            attribute.bend = [xx, xy, yy];
             self.attributes[i] = attribute;
             true
-        })
+        });
     }
 }

@@ -17,16 +17,16 @@
 //! The number is ceil(−E/16dy) for the edge function E at the row's first centre. From row to row it changes
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
-use super::setup::{Oriented, TriangleSetup};
+use super::fill::Fill;
+use super::setup::TriangleSetup;
+use super::shade::{Pixels, Quality, sealed::Sealed};
 use crate::math::recip::{Reciprocal, quotient_of_10_bits};
-use crate::num::I12F4;
 use crate::scene::Viewport;
 use core::ops::Range;
 
-/// Pixels of one row of a triangle, side by side and all visible; handed to a
-/// [`Shader`](super::Shader).
+/// Pixels of one row of a triangle, side by side and all visible.
 #[derive(Clone, Copy, Debug)]
-pub struct Span<'a> {
+pub(crate) struct Span<'a> {
     pub(super) setup: &'a TriangleSetup,
     pub(super) x: i32,
     pub(super) y: i32,
@@ -37,23 +37,6 @@ const _: () = assert!(size_of::<Span<'_>>() == size_of::<usize>() + 8);
 impl<'a> Span<'a> {
     pub(crate) fn new(setup: &'a TriangleSetup, x: i32, y: i32) -> Self {
         Self { setup, x, y }
-    }
-
-    /// Column of the first pixel.
-    #[must_use]
-    pub const fn x(&self) -> i32 {
-        self.x
-    }
-
-    /// Row on the screen (not in the band).
-    #[must_use]
-    pub const fn y(&self) -> i32 {
-        self.y
-    }
-
-    /// Whether the triangle's colours are greys, so that the first channel stands for all.
-    pub(crate) const fn is_gray(&self) -> bool {
-        self.setup.gray
     }
 
     /// Without its first pixels.
@@ -67,8 +50,33 @@ impl<'a> Span<'a> {
     }
 }
 
+/// A [`Span`] and its pixels.
+pub(crate) struct Run<'a, W> {
+    pub(crate) span: Span<'a>,
+    pub(crate) pixels: &'a mut [W],
+}
+
+impl<W> Sealed for Run<'_, W> {}
+
+impl<W: Copy> Pixels<W> for Run<'_, W> {
+    #[inline]
+    fn is_gray(&self) -> bool {
+        self.span.setup.gray
+    }
+
+    #[inline]
+    fn fill_evenly(self, word: W) {
+        self.pixels.fill(word);
+    }
+
+    #[inline]
+    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+        self.span.fill::<Q, N, L>(self.pixels, fill);
+    }
+}
+
 /// An edge from row to row.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Edge {
     /// Pixel centres left of the edge, with [`FRACTION`] bits: the fraction of a short edge, and none of a long one.
     x: i32,
@@ -84,9 +92,15 @@ const FRACTION: u32 = 20;
 
 impl Edge {
     /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
+    #[inline(always)]
+    fn set(&mut self, is_long: bool, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
+        if is_long { self.long(top, bottom, row) } else { self.short(top, bottom, row) }
+    }
+
+    /// Likewise.
     #[cold]
     #[inline(never)]
-    fn long(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
+    fn long(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
@@ -101,8 +115,8 @@ impl Edge {
     ///
     /// The number is a multiple of 1/16dy, rounded up. 2⁻¹⁴ less, half of the least such step, may be wrong by just as much. The
     /// reciprocal is, by 2⁻²⁰, and makes |dx|·2⁻²⁴ ≤ 2⁻¹⁵ of x; the slope's rounding makes 2⁻²¹ a row, 2⁻¹⁶ at most.
-    #[inline]
-    fn short(&mut self, top: [i32; 2], bottom: [i32; 2], row: i32) {
+    #[inline(never)]
+    fn short(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
         let slope = quotient_of_10_bits(bottom[0] - top[0], bottom[1] - top[1]);
         let below = row * 16 + 8 - top[1];
         self.x = ((top[0] + 8) << (FRACTION - 4)) + ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
@@ -127,16 +141,16 @@ impl Edge {
 }
 
 /// A triangle's rows within a window. One is used for all triangles of a draw.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Rows {
     left: Edge,
     right: Edge,
     row: i32,
-    /// Where the lower edge begins, and the end of the rows.
+    /// Where one edge takes another's place, and the end of the rows.
     knee: i32,
     end: i32,
-    /// The lower edge's ends.
-    lower: [[i32; 2]; 2],
+    /// The edge that begins at the knee.
+    lower: Edge,
     lower_is_right: bool,
     is_long: bool,
     /// Whether some of the triangle lies beyond the window's first or last column.
@@ -144,9 +158,9 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// For corners that run clockwise.
+    /// Those of a triangle whose corners run clockwise.
     #[inline(never)]
-    fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
+    pub(crate) fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
         // From the top down the right to `next`, and down the left to `last`.
         let [top, next, last] = if a[1] <= b[1] && a[1] <= c[1] {
             [a, b, c]
@@ -156,44 +170,99 @@ impl Rows {
             [c, a, b]
         };
         let (next_row, last_row) = (first_row(next[1]), first_row(last[1]));
+        let Range { start, end } = window.columns;
         self.row = first_row(top[1]).max(window.rows.start);
         self.end = next_row.max(last_row).min(window.rows.end);
-        self.knee = next_row.min(last_row).min(self.end);
+        // A cut triangle may lie beyond all columns.
+        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
+        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
+        let xs = [top[0], next[0], last[0]];
+        if self.is_cut
+            && (xs.iter().all(|x| first_row(*x) >= end) || xs.iter().all(|x| first_row(*x) < start))
+        {
+            self.end = self.row;
+        }
         if self.row >= self.end {
             return;
         }
-        let Range { start, end } = window.columns;
-        let inside = |x: i32| (x - start * 16) | (end * 16 - x);
-        self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
         let wide = |from: i32, to: i32| to - from + (1 << 9);
         self.is_long = (wide(top[0], next[0]) | wide(top[0], last[0]) | wide(next[0], last[0])) as u32 >> 10
             != 0
             || (next[1] - top[1]) | (last[1] - top[1]) >= 1 << 9;
-        self.lower_is_right = next_row < last_row;
-        self.lower = if self.lower_is_right { [*next, *last] } else { [*last, *next] };
         if next_row > self.row {
-            self.set_edge(true, top, next);
+            self.right.set(self.is_long, top, next, self.row);
         }
         if last_row > self.row {
-            self.set_edge(false, top, last);
+            self.left.set(self.is_long, top, last, self.row);
+        }
+        self.lower_is_right = next_row < last_row;
+        self.knee = next_row.min(last_row).min(self.end);
+        if self.knee < self.end {
+            let (from, to) = if self.lower_is_right { (next, last) } else { (last, next) };
+            self.lower.set(self.is_long, from, to, self.knee.max(self.row));
         }
     }
 
-    #[inline(never)]
-    fn set_edge(&mut self, is_right: bool, top: &[i32; 2], bottom: &[i32; 2]) {
-        let edge = if is_right { &mut self.right } else { &mut self.left };
-        if self.is_long {
-            edge.long(*top, *bottom, self.row);
-        } else {
-            edge.short(*top, *bottom, self.row);
+    /// Whether it has none.
+    #[inline]
+    pub(super) fn are_none(&self) -> bool {
+        self.row >= self.end
+    }
+
+    /// Whether they are at most 32 pixels wide and less high, and all columns within the window.
+    #[inline]
+    pub(crate) fn are_simple(&self) -> bool {
+        !self.is_long && !self.is_cut
+    }
+
+    /// The first row.
+    #[inline]
+    pub(crate) fn row(&self) -> i32 {
+        self.row
+    }
+
+    /// The first row alone.
+    pub(super) fn first(&self) -> Self {
+        let end = self.end.min(self.row + 1);
+        Self { end, knee: self.knee.min(end), ..self.clone() }
+    }
+
+    /// The next row where [`Rows::are_simple`]: the first column and the one behind the last. It may be empty.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Option<(i32, i32)> {
+        if self.row >= self.knee && !self.reach_knee() {
+            return None;
+        }
+        self.row += 1;
+        Some((self.left.next(), self.right.next()))
+    }
+
+    /// Hands on every row: the row, the first column and the one behind the last.
+    #[inline]
+    pub(crate) fn each(&mut self, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
+        while let Some((mut left, mut right)) = self.next() {
+            left = left.max(window.columns.start);
+            right = right.min(window.columns.end);
+            if self.is_long {
+                self.left.carry();
+                self.right.carry();
+            }
+            if left < right {
+                emit(self.row - 1, left, right);
+            }
         }
     }
 
-    /// The edge that begins at the knee takes the place of the one that ends there.
+    /// The edge that begins at the knee takes the place of the one that ends there. False at the end.
     #[inline(never)]
-    fn pass_knee(&mut self) {
-        let [top, bottom] = self.lower;
-        self.set_edge(self.lower_is_right, &top, &bottom);
+    fn reach_knee(&mut self) -> bool {
+        if self.row >= self.end {
+            return false;
+        }
+        let edge = if self.lower_is_right { &mut self.right } else { &mut self.left };
+        *edge = self.lower;
+        self.knee = self.end;
+        true
     }
 }
 
@@ -232,51 +301,6 @@ impl Window {
     pub(crate) fn is_empty(&self) -> bool {
         self.columns.is_empty() || self.rows.is_empty()
     }
-
-    /// Whether a triangle's bounding box has a pixel centre in it.
-    #[inline]
-    pub(super) fn touches(&self, triangle: &Oriented<'_>) -> bool {
-        let overlaps = |a: I12F4, b: I12F4, c: I12F4, range: &Range<i32>| {
-            let (low, high) = (a.min(b).min(c).to_bits(), a.max(b).max(c).to_bits());
-            first_row(low.into()) < range.end && first_row(high.into()) >= range.start
-        };
-        let [a, b, c] = triangle.vertices;
-        overlaps(a.y, b.y, c.y, &self.rows) && overlaps(a.x, b.x, c.x, &self.columns)
-    }
-}
-
-impl TriangleSetup {
-    /// Hands on every row of the triangle within a window: the row, the first column and the one behind the last.
-    #[inline]
-    pub(crate) fn rows(&self, rows: &mut Rows, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
-        rows.start(&self.corners, window);
-        let mut y = rows.row;
-        let is_simple = !rows.is_long && !rows.is_cut;
-        while y < rows.end {
-            let stop = if y < rows.knee {
-                rows.knee
-            } else {
-                rows.row = y;
-                rows.pass_knee();
-                rows.end
-            };
-            while y < stop {
-                let (mut left, mut right) = (rows.left.next(), rows.right.next());
-                if !is_simple {
-                    left = left.max(window.columns.start);
-                    right = right.min(window.columns.end);
-                    if rows.is_long {
-                        rows.left.carry();
-                        rows.right.carry();
-                    }
-                }
-                if left < right {
-                    emit(y, left, right);
-                }
-                y += 1;
-            }
-        }
-    }
 }
 
 #[cfg(test)]
@@ -296,7 +320,7 @@ mod tests {
                 // As the window may have it, from any row on.
                 let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);
                 if first < end {
-                    edge.short(top, bottom, first);
+                    edge.short(&top, &bottom, first);
                 }
                 for row in first..end {
                     let exactly = (top[0] - 8) * dy + (row * 16 + 8 - top[1]) * dx + 16 * dy - 1;

@@ -16,7 +16,7 @@ pub struct Stats {
     pub clipped: u32,
     /// Triangles, or pieces of clipped ones, left out because they had no area or faced the wrong way.
     pub culled: u32,
-    /// Triangles or pieces out of the viewport or of the band.
+    /// Triangles or pieces without a row in the viewport, or in the band.
     pub out_of_sight: u32,
     /// Triangles left out because their numbers were too coarse for the guard band: so close to an eye with a near
     /// plane of almost 0 that rounding moves them by hundreds of pixels.

@@ -29,14 +29,16 @@ pub(super) struct Bend {
     lengths: [u32; 3],
     /// |Δq|/q_min along them, 16 fraction bits, below ¼.
     falls: [u32; 3],
+    /// 1/q_min = `reciprocal` · 2^(`zeros` − 48).
+    reciprocal: u32,
+    zeros: u32,
 }
 
 impl Bend {
-    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest.
+    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest, and the least.
     /// `None` if distances differ by a quarter.
     #[inline]
-    pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3]) -> Option<Self> {
-        let least = q1.min(q2);
+    pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], least: u32) -> Option<Self> {
         if q0 - least >= least >> 2 {
             return None;
         }
@@ -51,6 +53,8 @@ impl Bend {
             // Rounded up; 15 bits times 17.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
                 .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
+            reciprocal,
+            zeros,
         })
     }
 
@@ -69,7 +73,41 @@ impl Bend {
         // 4 · error, at most a quarter of a rise.
         let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
         let error = (error >> 8) + 1;
+        let range = rises[0].max(rises[1]).max(rises[2]) as i32;
+        // Elsewhere u may change that much less along an edge.
+        let least = |i: usize| rises[i].saturating_sub(mul_16(range, self.falls[i]) as u32);
         error <= ((unit >> 8) * (limit >> 8)) >> 8
-            || (0..3).any(|i| error * self.lengths[i] <= ((rises[i] >> 8) * (limit >> 8)) >> 4)
+            || (0..3).any(|i| error * self.lengths[i] <= ((least(i) >> 8) * (limit >> 8)) >> 4)
+    }
+
+    /// |Δq| from corner 0 to 1 or 2 by the middle of the least and the greatest q, 16 fraction bits.
+    #[inline]
+    pub(super) fn fall(&self, i: usize) -> u32 {
+        (self.falls[i] * self.to_middle()) >> 15
+    }
+
+    /// q_min by the middle of the least and the greatest, 15 fraction bits, nearly.
+    #[inline]
+    fn to_middle(&self) -> u32 {
+        (1 << 15) - (self.falls[0].max(self.falls[1]) >> 2)
+    }
+
+    /// By how much of the middle of the least and the greatest q it changes a column and a row, 16 fraction bits. `None` where a
+    /// quadratic would not do.
+    #[inline]
+    pub(super) fn slopes(&self, steps: [i32; 2]) -> Option<[i32; 2]> {
+        let most = self.falls[0].max(self.falls[1]);
+        // In 1/16 px. Of the longest edge: along that u changes the most.
+        let longest = self.lengths[0].max(self.lengths[1]).max(self.lengths[2]);
+        let error = longest * ((most * most) >> 16) <= 12 << 16;
+        let least = (1u32 << 31) >> self.zeros;
+        if !error || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
+            return None;
+        }
+        let middle = self.to_middle();
+        Some(steps.map(|step| {
+            let slope = (((step << self.zeros) >> 16) * self.reciprocal as i32) >> 16;
+            (slope * middle as i32) >> 15
+        }))
     }
 }

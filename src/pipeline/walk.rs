@@ -16,13 +16,12 @@
 //! pixels where q changes by 1/12 of itself a pixel (a straight line could be 3 long), every 16 where it is 1/33 (5). Floors
 //! seen level and walls seen straight (q′ ≈ 0) are one straight run with one division.
 
-use super::attribute::{Attribute, short_inverse};
-use super::fill::{Each, Fill};
+use super::attribute::{Attribute, short_inverse, towards_zero};
+use super::fill::Fill;
 use super::shade::Quality;
 use super::span::Span;
 use crate::math::recip::{Reciprocal, short};
 use crate::num::{mul_16, mul_16_signed};
-use core::marker::PhantomData;
 
 /// How far apart divisions may be: the longest sub-span, in pixels, where q/|q′| is at least `LEAST[length]` / 16 pixels
 /// all along: the error of the quadratic's pairs stays below 3/16 pixel, and of those beyond 16 pixels, whose steps are rounded more often,
@@ -132,18 +131,7 @@ impl<'a, const N: usize> Walk<'a, N> {
 }
 
 impl Span<'_> {
-    /// Fills pixels from this span's first one with `color` of the first `N` attributes, I16F16,
-    /// which never leave the range of the triangle's corners.
-    #[inline]
-    pub(crate) fn shade<Q: Quality, W, const N: usize>(
-        &self,
-        pixels: &mut [W],
-        color: impl Fn([i32; N]) -> W,
-    ) {
-        self.fill::<Q, N, _>(pixels, &Each(color, PhantomData));
-    }
-
-    /// As [`Span::shade`], run by run.
+    /// Fills pixels from this span's first one, run by run.
     ///
     /// Not inlined: a shader that chooses between loops would need the stack of all of them.
     #[inline(never)]
@@ -240,12 +228,6 @@ fn quadratic(rise: i32, length: i32, inverse: u32, bending: i32) -> (i32, i32) {
     let bends = ((length - 1) * (length - 1)) >> 2;
     let straight = rise.wrapping_sub(bend.wrapping_mul(bends));
     (towards_zero(mul_16(straight, inverse)), bend)
-}
-
-/// Of a product rounded down: one more if it is negative.
-#[inline]
-fn towards_zero(product: i32) -> i32 {
-    product - (product >> 31)
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use super::{Lights, Texture};
 use crate::math::Pose;
 use crate::pipeline::{
-    Affine, Coloring, Colors, Cull, Exact, Gray, Inputs, LitTexels, Quality, QuarterPixel, RedBlueGreen,
-    Shader, Span, Texels, Varying, color, lit,
+    Affine, Coloring, Colors, Cull, Exact, Gray, Inputs, LitTexels, Pixels, Quality, QuarterPixel,
+    RedBlueGreen, Shader, Texels, Varying, color, lit,
 };
 use crate::target::PixelFormat;
 use core::marker::PhantomData;
@@ -177,37 +177,32 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         }
     }
 
-    fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
+    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
+        // `Exact` has no use for coordinates and light in 16 bits.
+        let (gray, packed) = (pixels.is_gray(), !Q::EVERY_PIXEL);
+        let scale_log2 = self.texture_scale.into();
         match (&self.surface, self.lights) {
-            (Surface::Flat(color), None) => pixels.fill(F::rgb565(*color)),
+            (Surface::Flat(color), None) => pixels.fill_evenly(F::rgb565(*color)),
             (Surface::Textured(texture), None) => {
-                span.fill::<Q, 2, _>(pixels, &Texels::<F>::new(texture, self.texture_scale.into()));
+                pixels.fill::<Q, 2, _>(&Texels::<F>::new(texture, scale_log2));
             }
-            (Surface::Textured(texture), Some(_)) => {
-                // `Exact` has no use for coordinates and light in 16 bits.
-                let scale_log2 = self.texture_scale.into();
-                match (!Q::EVERY_PIXEL, span.is_gray()) {
-                    (true, true) => {
-                        span.fill::<Q, 3, _>(pixels, &LitTexels::<F, Gray>::new(texture, scale_log2));
-                    }
-                    (true, false) => {
-                        span.fill::<Q, 5, _>(pixels, &LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
-                    }
-                    (false, true) => span.shade::<Q, F::Word, 3>(pixels, |[u, v, light]| {
-                        lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3]))
-                    }),
-                    (false, false) => span.shade::<Q, F::Word, 5>(pixels, |[u, v, light @ ..]| {
-                        lit::<F>(texture.fetch(u >> 16, v >> 16), whole(light))
-                    }),
+            (Surface::Textured(texture), Some(_)) => match (packed, gray) {
+                (true, true) => pixels.fill::<Q, 3, _>(&LitTexels::<F, Gray>::new(texture, scale_log2)),
+                (true, false) => {
+                    pixels.fill::<Q, 5, _>(&LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
                 }
-            }
-            (Surface::Flat(_) | Surface::Gouraud, _) => match (!Q::EVERY_PIXEL, span.is_gray()) {
-                (true, true) => span.fill::<Q, 1, _>(pixels, &Colors::<F, Gray>::NEW),
-                (true, false) => span.fill::<Q, 3, _>(pixels, &Colors::<F, RedBlueGreen>::NEW),
-                (false, true) => {
-                    span.shade::<Q, F::Word, 1>(pixels, |[gray]| color::<F>(whole([gray; 3])));
-                }
-                (false, false) => span.shade::<Q, F::Word, 3>(pixels, |rgb| color::<F>(whole(rgb))),
+                (false, true) => pixels.shade::<Q, 3>(|[u, v, light]| {
+                    lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3]))
+                }),
+                (false, false) => pixels.shade::<Q, 5>(|[u, v, light @ ..]| {
+                    lit::<F>(texture.fetch(u >> 16, v >> 16), whole(light))
+                }),
+            },
+            (Surface::Flat(_) | Surface::Gouraud, _) => match (packed, gray) {
+                (true, true) => pixels.fill::<Q, 1, _>(&Colors::<F, Gray>::NEW),
+                (true, false) => pixels.fill::<Q, 3, _>(&Colors::<F, RedBlueGreen>::NEW),
+                (false, true) => pixels.shade::<Q, 1>(|[gray]| color::<F>(whole([gray; 3]))),
+                (false, false) => pixels.shade::<Q, 3>(|rgb| color::<F>(whole(rgb))),
             },
         }
     }
@@ -290,8 +285,8 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
         F::rgb565(self.texture.fetch(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
     }
 
-    fn span(&self, span: &Span<'_>, pixels: &mut [F::Word]) {
-        span.fill::<Q, 2, _>(pixels, &Texels::<F>::new(&self.texture, self.texture_scale.into()));
+    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
+        pixels.fill::<Q, 2, _>(&Texels::<F>::new(&self.texture, self.texture_scale.into()));
     }
 }
 

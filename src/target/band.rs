@@ -4,7 +4,7 @@ use super::background::Background;
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
 use crate::num::U1F31;
-use crate::pipeline::{Rows, Shader, Span, TriangleSetup, Window};
+use crate::pipeline::{Patch, Rows, Run, Shader, Span, TriangleSetup, Window};
 use core::convert::Infallible;
 use core::fmt;
 use core::ops::Range;
@@ -222,13 +222,18 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         shader: &S,
     ) {
         let (top, width) = (i32::from(self.top), usize::from(self.width));
-        setup.rows(rows, window, |y, start, end| {
+        if Patch::<F::Word, D>::takes(setup, rows) {
+            let (pixels, depth) = (&mut *self.pixels, &mut *self.depth);
+            let first = (rows.row() - top) as usize * width;
+            return shader.paint(Patch::<F::Word, D> { setup, rows, first, width, pixels, depth });
+        }
+        rows.each(window, |y, start, end| {
             let row = (y - top) as usize * width;
             let (first, end) = (row + start as usize, row + end as usize);
             let mut span = Span::new(setup, start, y);
             if D::ALWAYS_PASSES {
                 if let Some(pixels) = self.pixels.get_mut(first..end) {
-                    shader.span(&span, pixels);
+                    shader.paint(Run { span, pixels });
                 }
                 return;
             }
@@ -242,7 +247,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
                 if let Some(pixels) = self.pixels.get_mut(first + run.start..first + run.end)
                     && !pixels.is_empty()
                 {
-                    shade(shader, &span.ahead(run.start), pixels);
+                    shade(shader, Run { span: span.ahead(run.start), pixels });
                 }
                 depth = depth.get_mut(tested..).unwrap_or_default();
                 if depth.is_empty() {
@@ -284,8 +289,8 @@ fn visible<D: DepthFormat>(depth: &mut [D::Word], mut near_w: u32, step: i32) ->
 /// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.
 #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, span: &Span<'_>, pixels: &mut [F::Word]) {
-    shader.span(span, pixels);
+fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, run: Run<'_, F::Word>) {
+    shader.paint(run);
 }
 
 impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {

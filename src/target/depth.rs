@@ -16,6 +16,13 @@ pub trait DepthFormat {
     /// Whether a pixel with this near/w is drawn; stores its depth if so. Called once for each
     /// pixel that a triangle covers.
     fn test(stored: &mut Self::Word, near_w: U1F31) -> bool;
+
+    /// As [`DepthFormat::test`], for 2⁻¹⁶ … 1 only.
+    #[doc(hidden)]
+    #[inline]
+    fn test_small(stored: &mut Self::Word, near_w: U1F31) -> bool {
+        Self::test(stored, near_w)
+    }
 }
 
 /// 16-bit depth: max(1, near/w · 2¹⁶) rounded down, 0 where nothing was drawn. Strictly nearer wins;
@@ -33,6 +40,17 @@ impl DepthFormat for Depth16 {
         let nearer = depth > *stored;
         if nearer {
             *stored = depth;
+        }
+        nearer
+    }
+
+    #[inline]
+    fn test_small(stored: &mut u16, near_w: U1F31) -> bool {
+        // 4 cycles less.
+        let depth = near_w.to_bits() >> 15;
+        let nearer = depth > u32::from(*stored);
+        if nearer {
+            *stored = depth as u16;
         }
         nearer
     }

@@ -230,3 +230,37 @@ pub(crate) fn any_case(log2_ratio: u32) -> impl Strategy<Value = Case> {
         },
     )
 }
+
+/// A mesh's triangle: all of it on a strip of at most 40 pixels, and distances that differ by less than a third.
+pub(crate) fn mesh_case() -> impl Strategy<Value = Case> {
+    let strips = (4..=40_u32, 4..=40_u32, 0..=900_u32).prop_map(|(w, h, row)| Strip::new(w, h, row));
+    let shapes = strips.prop_flat_map(|strip| {
+        let place = || {
+            let (width, height, top) = (strip.width as i32, strip.height as i32, 16 * strip.row as i32);
+            (0..=16 * width, top..=top + 16 * height)
+        };
+        (Just(strip), [place(), place(), place()])
+    });
+    let distances = prop_oneof![3 => 1.0..1.3_f64, 1 => 1.0..1.03_f64];
+    let distances = (distances, 0.0..=1.0_f64, 0..3_usize).prop_map(|(farthest, third, turns)| {
+        let mut distances = [1.0, farthest, farthest.powf(third)];
+        distances.rotate_left(turns);
+        distances
+    });
+    let texels = || {
+        let within = |limit: i32| [-limit..=limit, -limit..=limit, -limit..=limit];
+        prop_oneof![within(32 << 16), within(2000 << 16), within(2 << 16)]
+    };
+    let reads = (0..INPUTS.len(), prop_oneof![Just(0), any::<u64>()]);
+    let attributes = ([texels(), texels()], [colors(), colors(), colors()]);
+    (shapes, distances, 0.0..=14.0_f64, attributes, reads).prop_map(
+        |((strip, places), distances, near, ([u, v], colors), (inputs, hidden))| {
+            let corner = |i: usize| {
+                let q = ((-near).exp2() / distances[i] * 2_f64.powi(31)).min(2_f64.powi(31) - 1.0) as u32;
+                let [r, g, b] = [0, 1, 2].map(|channel| colors[i][channel]);
+                Corner { x: places[i].0, y: places[i].1, q, attributes: [u[i], v[i], r, g, b] }
+            };
+            Case { strip, triangle: Triangle([0, 1, 2].map(corner)), inputs: INPUTS[inputs], hidden }
+        },
+    )
+}
