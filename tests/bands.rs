@@ -18,8 +18,9 @@ use fixel::embedded_graphics::prelude::*;
 use fixel::embedded_graphics::primitives::Rectangle;
 use fixel::embedded_graphics::text::Text;
 use fixel::{
-    Affine, Background, Band, BigEndian, CapacityError, Changes, Depth16, DepthFormat, DisplayList, Exact,
-    Flushed, Gradient, Material, NoDepth, Picture, PixelFormat, Quality, QuarterPixel, Texture,
+    Affine, Background, Band, BigEndian, Camera, CapacityError, Changes, Depth16, DepthFormat, DisplayList,
+    Exact, Flushed, Gradient, Material, Mesh, NoDepth, Picture, PixelFormat, Pose, Quality, QuarterPixel,
+    Texture, Vec3, Vertex,
 };
 use proptest::prelude::*;
 
@@ -269,6 +270,34 @@ fn a_list_takes_what_it_says() {
     assert!(room <= 4 * 64 + 64, "{room} bytes for 4 draws");
 }
 
+#[test]
+fn the_last_vertex_of_the_largest_mesh_keeps_its_texture() {
+    let mut vertices = vec![Vertex::new(0.0, 0.0, 0.0); 1 << 16];
+    let corners = [(-1.0, -1.0, 0, 16), (1.0, -1.0, 16, 16), (0.0, 1.0, 3, 0)];
+    for (vertex, (x, y, u, v)) in vertices.iter_mut().rev().zip(corners) {
+        *vertex = Vertex::new(x, y, 0.0).uv(u, v).normal(0.0, 0.0, 1.0);
+    }
+    let triangles = [[65535, 65534, 65533]];
+    let mesh = Mesh::try_new(&vertices, &triangles).expect("the indices are in range");
+    let material = &leaked::<QuarterPixel>()[4];
+    let screen = Size::new(32, 24);
+    let camera = Camera::focal(16.0, screen).at(Vec3::lit(0.0, 0.0, 1.5));
+    let mut list = DisplayList::<3, 1, 1>::new();
+    camera.draw(&mesh, &Pose::IDENTITY, material, &mut list).expect("three vertices are named");
+    let mut pictures = [[0; 32 * 24]; 2];
+    let mut depth = [0; 32 * 24];
+    for (picture, is_listed) in pictures.iter_mut().zip([false, true]) {
+        depth.fill(0);
+        let mut band = Band::<Rgb565, Depth16>::new(screen, picture, &mut depth).expect("it fits");
+        if is_listed {
+            list.render(0, &mut band);
+        } else {
+            camera.draw(&mesh, &Pose::IDENTITY, material, &mut band);
+        }
+    }
+    assert!(pictures[0] == pictures[1] && pictures[0].iter().any(|word| *word != 0));
+}
+
 /// A display that keeps what it is sent.
 struct Display {
     size: Size,
@@ -375,7 +404,7 @@ fn what_stands_still_behind_a_small_mover_is_not_sent() {
     let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 8), &mut pixels, &mut depth).expect("it fits");
     let mut changes = Changes::<6>::default();
     let mut report = |x: f32| {
-        let pose = fixel::Pose::IDENTITY.scaled_lit(0.25).at(fixel::Vec3::lit(x, 0.0, -2.0));
+        let pose = Pose::IDENTITY.scaled_lit(0.25).at(Vec3::lit(x, 0.0, -2.0));
         let ball = Draw { mesh: 2, material: 3, pose, inset: false, orthographic: false };
         let list = listed::<_, Rgb565>(screen, &[ball], materials);
         let Ok(flushed) =
@@ -391,12 +420,8 @@ fn what_stands_still_behind_a_small_mover_is_not_sent() {
 /// Without depth a list is drawn back to front, and what is as far in the order of drawing.
 #[test]
 fn without_depth_a_list_is_drawn_back_to_front() {
-    const FACING: fixel::Mesh = fixel::Mesh::new(
-        &[
-            fixel::Vertex::new(-1.0, -1.0, 0.0),
-            fixel::Vertex::new(1.0, -1.0, 0.0),
-            fixel::Vertex::new(0.0, 1.0, 0.0),
-        ],
+    const FACING: Mesh = Mesh::new(
+        &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
         &[[0, 1, 2]],
     );
     let colors: Vec<Material> = (0..12).map(|i| Material::flat(Rgb565::new(i, 63 - i, 2 * i))).collect();
@@ -404,10 +429,10 @@ fn without_depth_a_list_is_drawn_back_to_front() {
     let shown = Cell::new(0_u32);
     for_all("back to front", 300, prop::collection::vec(triangle(), 1..12), |triangles| {
         let screen = Size::new(48, 40);
-        let camera = fixel::Camera::focal(24.0, screen);
+        let camera = Camera::focal(24.0, screen);
         let pose = |&([x, y], away): &([i16; 2], i16)| {
             let tenths = |n: i16| fixel::fixed::types::I16F16::from_num(n) / 10;
-            fixel::Pose::IDENTITY.at(fixel::Vec3::new(tenths(x), tenths(y), tenths(-10 * away)))
+            Pose::IDENTITY.at(Vec3::new(tenths(x), tenths(y), tenths(-10 * away)))
         };
         let mut list = DisplayList::<64, 32, 16, _, Rgb565>::new();
         for (triangle, material) in triangles.iter().zip(&colors) {

@@ -5,6 +5,7 @@ mod band;
 mod canvas;
 mod changes;
 mod depth;
+mod drawing;
 mod format;
 mod list;
 
