@@ -13,6 +13,7 @@
 //! ```
 
 use super::color::Coloring;
+use super::fan::arrange;
 use super::transform::{ClipVertex, ToClip, focal_log2};
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_high_short, mul_round, normalised, wide};
@@ -156,7 +157,8 @@ impl Clip {
     pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
         let (center, radius) = &to_clip.bounds(bounds);
         let (w, viewport) = (i64::from(center[2]), &projection.viewport);
-        if w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
+        // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
+        if self.near >= self.far || w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
             return false;
         }
         // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
@@ -209,6 +211,7 @@ impl Clip {
             (to.u, to.v, to.color) = (vertex.u, vertex.v, vertex.color);
             self.project(|axis| vertex.at[axis], &GUARD_BAND, (&mut to.x, &mut to.y, &mut to.q))
         });
+        arrange(to.get_mut(..polygon.len())?);
         fits.then_some(polygon.len())
     }
 

@@ -14,6 +14,7 @@ mod color;
 mod colors;
 mod direct;
 mod draw;
+mod fan;
 mod fill;
 mod listed;
 mod patch;

@@ -30,6 +30,8 @@ pub(super) const fn focal_log2(focal: I16F16) -> i32 {
 /// The most fraction bits of clip coordinates. The near plane may be one last bit of the world, 2⁻¹⁶, away, where w is not to
 /// be rounded to a thousandth.
 const FINEST: i32 = 34;
+/// The most without perspective, where 2^this is a number in clip space.
+const FINEST_FLAT: i32 = 28;
 
 /// From mesh space to clip space.
 pub(super) struct ToClip {
@@ -102,7 +104,8 @@ impl ToClip {
         let unit_bits = (59 - bits(&translation)).min(fraction_bits - 5).min(FINEST);
         // Without perspective depth reaches from plane to plane: the far one has to be among the clip coordinates.
         let far_bits = if projection.orthographic {
-            15 + projection.far.to_bits().leading_zeros() as i32
+            // And 1 is what divides.
+            (15 + projection.far.to_bits().leading_zeros() as i32).min(FINEST_FLAT)
         } else {
             FINEST
         };

@@ -16,7 +16,8 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// It goes **straight to any [`DrawTarget`]**, with neither a band nor a frame of memory: each row of its two triangles is one
 /// [`fill_contiguous`](DrawTarget::fill_contiguous), whose colours are computed as the display asks for them. Nothing is
-/// drawn outside the target's bounding box, and no pixel twice; the display's first error ends the drawing and is
+/// drawn outside the target's bounding box, and no pixel twice (but a picture seen exactly from its edge, which rounding to 1/16 px
+/// may fold); the display's first error ends the drawing and is
 /// returned as it is.
 ///
 /// ```
