@@ -167,9 +167,33 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         Self { texture, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
     }
 
-    /// Where a run of u and v, and of light, begins, its step, and what is added to that each time; in the units of bent runs.
+    /// A straight run from a place of u and v, and of light, with the step of each, in the units of bent runs.
     #[inline]
     fn run<const M: usize>(
+        &self,
+        pixels: &mut [F::Word],
+        [mut at, step]: [[i32; 2]; 2],
+        [mut light, light_step]: [C; 2],
+    ) where
+        C: Channels<M>,
+    {
+        if !self.is_packed {
+            for pixel in pixels {
+                *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
+                (at, light) = (plus(at, step), light.plus(light_step));
+            }
+            return;
+        }
+        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
+        for pixel in pixels {
+            *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
+            (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
+        }
+    }
+
+    /// A bent run: where u and v, and light, begin, their steps, and what is added to these after every second pixel.
+    #[inline]
+    fn bend<const M: usize>(
         &self,
         pixels: &mut [F::Word],
         [at, step, bend]: [[i32; 2]; 3],
@@ -178,7 +202,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         C: Channels<M>,
     {
         if !self.is_packed {
-            return self.run_unpacked(pixels, [at, step, bend], [light, light_step, light_bend]);
+            return self.bend_unpacked(pixels, [at, step, bend], [light, light_step, light_bend]);
         }
         let packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
         let (step, bend, light) = (packed_step(step), packed_step(bend), [light, light_step]);
@@ -191,9 +215,9 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         });
     }
 
-    /// As [`LitTexels::run`] of a texture that is not packable.
+    /// As [`LitTexels::bend`] of a texture that is not packable.
     #[inline(never)]
-    fn run_unpacked<const M: usize>(
+    fn bend_unpacked<const M: usize>(
         &self,
         pixels: &mut [F::Word],
         [at, step, bend]: [[i32; 2]; 3],
@@ -250,13 +274,11 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     {
         let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
         let unit_step = [shifted(step[0], a), shifted(step[1], b)];
-        let (packed_light_step, none) =
-            (C::pack(light_step.map(|step| shifted(step, C::DROPPED))), C::pack([0; M]));
+        let packed_light_step = C::pack(light_step.map(|step| shifted(step, C::DROPPED)));
         let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
             let packed_light = C::pack(light.map(|channel| channel >> C::DROPPED));
-            let uv = [[at[0] >> a, at[1] >> b], unit_step, [0; 2]];
-            self.run(block, uv, [packed_light, packed_light_step, none]);
+            self.run(block, [[at[0] >> a, at[1] >> b], unit_step], [packed_light, packed_light_step]);
             at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
             for (light, step) in light.iter_mut().zip(light_step) {
                 *light = light.wrapping_add(step << log2);
@@ -315,7 +337,7 @@ macro_rules! fill_of_lit_texels {
                 let ([u, v, at @ ..], [u_step, v_step, step @ ..]) = (at, step);
                 let [u_bend, v_bend, bend @ ..] = bend;
                 let uv = [[u, v], [u_step, v_step], [u_bend, v_bend]];
-                self.run(pixels, uv, [at, step, bend].map(C::pack));
+                self.bend(pixels, uv, [at, step, bend].map(C::pack));
             }
         }
     };
