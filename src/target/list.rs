@@ -64,8 +64,9 @@ pub struct DisplayList<
 > {
     vertices: Vec<ListVertex, V>,
     triangles: Vec<ListTriangle, T>,
-    /// The triangles back to front, or nothing as long as they are as they were drawn.
-    order: Vec<u16, T>,
+    /// Back to front: the triangles. As drawn: the rows that each [`BLOCK`] of them touch, as [`ListTriangle::rows`] has them.
+    index: Vec<u16, T>,
+    is_sorted: bool,
     draws: Vec<Draw<'a, S>, D>,
     format: PhantomData<fn() -> F>,
 }
@@ -90,7 +91,8 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
         Self {
             vertices: Vec::new(),
             triangles: Vec::new(),
-            order: Vec::new(),
+            index: Vec::new(),
+            is_sorted: false,
             draws: Vec::new(),
             format: PhantomData,
         }
@@ -106,7 +108,8 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.triangles.clear();
-        self.order.clear();
+        self.index.clear();
+        self.is_sorted = false;
         self.draws.clear();
     }
 
@@ -124,9 +127,10 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
         let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
         let key =
             |id: u16| (self.triangles.get(usize::from(id)).map_or(0, |triangle| view.nearness(triangle)), id);
-        self.order.clear();
-        self.order.extend(0..self.triangles.len() as u16);
-        self.order.sort_unstable_by_key(|&id| key(id));
+        self.index.clear();
+        self.index.extend(0..self.triangles.len() as u16);
+        self.index.sort_unstable_by_key(|&id| key(id));
+        self.is_sorted = true;
     }
 
     /// Draws rows `top` … `top` + height − 1 of the screen into a band, which becomes the band of these rows. What it holds it
@@ -137,7 +141,8 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     {
         band.move_to(top);
         let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
-        render(&view, &self.order, &self.draws, band);
+        let index = if self.is_sorted { Index::Order(&self.index) } else { Index::Rows(&self.index) };
+        render(&view, index, &self.draws, band);
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
@@ -182,7 +187,7 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
             let window = window.clone().within(&draw.viewport);
             let end = usize::from(draw.end);
             for triangle in self.triangles.get(first..end).unwrap_or_default() {
-                if triangle.rows[0] > steps[1] || triangle.rows[1] < steps[0] {
+                if !touch(triangle.rows, steps) {
                     continue;
                 }
                 let [[left, right], [top, bottom]] = view.bounds(triangle);
@@ -247,10 +252,19 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
             self.vertices.truncate(vertices);
             self.triangles.truncate(triangles);
             self.draws.truncate(draws);
-        } else {
-            self.order.clear();
+            return result;
         }
-        result
+        if self.is_sorted {
+            self.index.clear();
+            self.is_sorted = false;
+        }
+        let complete = self.index.len().min(triangles / BLOCK);
+        self.index.truncate(complete);
+        for block in self.triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
+            // There is room: as much as for triangles.
+            let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
+        }
+        Ok(())
     }
 }
 
@@ -265,15 +279,40 @@ impl<S> Draw<'_, S> {
     }
 }
 
+/// How a list finds the triangles of a band.
+enum Index<'l> {
+    /// All are looked at, in this order.
+    Order(&'l [u16]),
+    /// Those of blocks that touch the band.
+    Rows(&'l [u16]),
+}
+
+/// How many triangles have one entry in the index: of s4 in bands of 16 rows 32 cost least, by 0.1 to 0.5 %.
+const BLOCK: usize = 32;
+
+/// The rows that some triangles touch.
+fn rows_of(block: &[ListTriangle]) -> [u8; 2] {
+    block.iter().fold([u8::MAX, 0], |[first, last], triangle| {
+        [first.min(triangle.rows[0]), last.max(triangle.rows[1])]
+    })
+}
+
 /// A window's rows in steps of the index: the first and the last. Of an empty window nonsense.
 fn index_of(window: &Window) -> [u8; 2] {
     [window.rows.start, window.rows.end - 1].map(|row| (row.clamp(0, 1023) >> ROWS_LOG2) as u8)
 }
 
-/// Compiled once for all capacities.
+/// Whether rows of the index, from the first to the last, touch others.
+#[inline]
+fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
+    // One branch.
+    ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
+}
+
+/// What a list holds of the rows of a band. Compiled once for all capacities.
 fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     view: &ListView<'_>,
-    order: &[u16],
+    index: Index<'_>,
     draws: &[Draw<'_, S>],
     band: &mut Band<'_, F, Z>,
 ) {
@@ -284,30 +323,12 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     if window.is_empty() {
         return;
     }
-    let [first, last] = index_of(&window);
+    let rows = index_of(&window);
     let within = |draw: &Draw<'_, S>| window.clone().within(&draw.viewport);
+    let mut ids = 0..draw.end;
     let mut raster = Raster::new(draw.shader, draw.is_orthographic, within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
-    // What a triangle out of the band costs, every band pays: 12 cycles on a Cortex-M0+.
-    let touches = |triangle: &&ListTriangle| triangle.rows[0] <= last && triangle.rows[1] >= first;
-    if order.is_empty() {
-        let mut start = 0;
-        for draw in draws {
-            let end = usize::from(draw.end);
-            raster.change(draw.shader, draw.is_orthographic, within(draw));
-            for triangle in view.triangles.get(start..end).unwrap_or_default().iter().filter(touches) {
-                view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
-                raster.draw(corners.each_ref(), Cull::None, &mut ());
-            }
-            start = end;
-        }
-        return;
-    }
-    let mut ids = 0..draw.end;
-    for &id in order {
-        let Some(triangle) = view.triangles.get(usize::from(id)).filter(touches) else {
-            continue;
-        };
+    let mut visit = |id: u16, triangle: &ListTriangle| {
         if !ids.contains(&id) {
             let number = draws.partition_point(|draw| draw.end <= id);
             let start = number.checked_sub(1).and_then(|before| draws.get(before)).map_or(0, |draw| draw.end);
@@ -319,6 +340,29 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw(corners.each_ref(), Cull::None, &mut ());
+    };
+    match index {
+        Index::Order(order) => {
+            for &id in order {
+                match view.triangles.get(usize::from(id)) {
+                    Some(triangle) if touch(triangle.rows, rows) => visit(id, triangle),
+                    _ => {}
+                }
+            }
+        }
+        Index::Rows(blocks) => {
+            let blocks = view.triangles.chunks(BLOCK).zip(blocks).zip((0..).step_by(BLOCK));
+            for ((block, of_block), first) in blocks {
+                if !touch(of_block.to_le_bytes(), rows) {
+                    continue;
+                }
+                for (triangle, id) in block.iter().zip(first..) {
+                    if touch(triangle.rows, rows) {
+                        visit(id, triangle);
+                    }
+                }
+            }
+        }
     }
 }
 
