@@ -172,22 +172,36 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     fn run<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        [mut at, step]: [[i32; 2]; 2],
+        [at, step]: [[i32; 2]; 2],
         [mut light, light_step]: [C; 2],
     ) where
         C: Channels<M>,
     {
         if !self.is_packed {
-            for pixel in pixels {
-                *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
-                (at, light) = (plus(at, step), light.plus(light_step));
-            }
-            return;
+            return self.run_unpacked(pixels, [at, step], [light, light_step]);
         }
         let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
+        }
+    }
+
+    /// As [`LitTexels::run`] of a texture that is not packable.
+    #[inline(never)]
+    fn run_unpacked<const M: usize>(
+        &self,
+        pixels: &mut [F::Word],
+        [mut at, step]: [[i32; 2]; 2],
+        [mut light, light_step]: [C; 2],
+    ) where
+        C: Channels<M>,
+    {
+        for pixel in pixels {
+            *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
+            (at, light) = (plus(at, step), light.plus(light_step));
+            // Not unrolled: 1 KiB.
+            core::hint::black_box(());
         }
     }
 

@@ -26,26 +26,29 @@ pub(super) fn arrange(polygon: &mut [ScreenVertex]) {
             break;
         }
     }
+    // The library's rotation takes 2 KiB.
     for _ in 0..best.1 {
-        if let Some(&first) = polygon.first() {
-            polygon.copy_within(1.., 0);
-            polygon[count - 1] = first;
+        for i in 1..count {
+            polygon.swap(i - 1, i);
         }
     }
 }
 
 /// Twice the area, in 1/256 px², of the triangles around a vertex that run the other way than the polygon.
+#[inline(never)]
 fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
-    let at = |i: usize| {
-        let vertex = &polygon[(first + i) % polygon.len()];
-        [vertex.x, vertex.y].map(|at| i32::from(at.to_bits()))
+    let (before, from) = polygon.split_at(first);
+    let mut around =
+        from.iter().chain(before).map(|vertex| [vertex.x, vertex.y].map(|at| i32::from(at.to_bits())));
+    let Some([x, y]) = around.next() else {
+        return 0;
     };
-    let [x, y] = at(0);
     let (mut sum, mut size) = (0_i64, 0);
-    for i in 1..polygon.len().saturating_sub(1) {
-        let ([ax, ay], [bx, by]) = (at(i), at(i + 1));
+    let mut last = [x, y];
+    for [bx, by] in around {
+        let [ax, ay] = last;
         let area = i64::from((ax - x) * (by - y) - (ay - y) * (bx - x));
-        (sum, size) = (sum + area, size + area.unsigned_abs());
+        (sum, size, last) = (sum + area, size + area.unsigned_abs(), [bx, by]);
     }
     (size - sum.unsigned_abs()) / 2
 }
