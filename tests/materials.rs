@@ -12,7 +12,10 @@ use common::generate::{strip, triangle};
 use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::pixelcolor::raw::RawU16;
-use fixel::{Cull, Material, NoDepth, Quality, Texture, TextureError, Wrap};
+use fixel::{
+    Cull, Inputs, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Texture, TextureError, Varying,
+    Wrap,
+};
 use proptest::prelude::*;
 use reference::{Sample, Triangle, UNIT};
 
@@ -254,4 +257,73 @@ fn pictures_of_4_texels_by_hand() {
     for (value, expected) in column.zip([0.5, 1.5, 2.5, 3.5, 4.5]) {
         assert!((value - expected).abs() < 0.02);
     }
+}
+
+/// Texels of one axis, by `color` alone or painted many at once.
+struct Painted {
+    axis: usize,
+    at_once: bool,
+}
+
+impl Shader<Recording> for Painted {
+    type Quality = QuarterPixel;
+
+    fn inputs(&self) -> Inputs {
+        Inputs::Uv
+    }
+
+    fn color(&self, at: &Varying) -> Drawn {
+        texel([at.u, at.v][self.axis].to_bits())
+    }
+
+    fn paint<P: Pixels<Drawn, QuarterPixel>>(&self, pixels: P) {
+        match (self.axis, self.at_once) {
+            (0, true) => pixels.shade(|[u]| texel(u)),
+            (_, true) => pixels.shade(|[_, v]| texel(v)),
+            (axis, false) => pixels.shade(|at: [i32; 2]| texel(at[axis])),
+        }
+    }
+}
+
+/// The default of `Shader::paint`.
+struct Plain(Painted);
+
+impl Shader<Recording> for Plain {
+    type Quality = QuarterPixel;
+
+    fn inputs(&self) -> Inputs {
+        Inputs::Uv
+    }
+
+    fn color(&self, at: &Varying) -> Drawn {
+        self.0.color(at)
+    }
+}
+
+fn texel(bits: i32) -> Drawn {
+    Drawn { attributes: [bits, 0, 0, 0, 0], written: true }
+}
+
+#[test]
+fn a_shader_that_paints_many_pixels_at_once_shows_what_its_color_says_1_000_cases() {
+    let seen = Cell::new(0_u64);
+    let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip), 0..2_usize));
+    for_all("painted", 1000, cases, |(strip, triangle, axis)| {
+        let mut pictures = [0, 1, 2].map(|_| Canvas::new::<NoDepth>(strip));
+        let [plain, each, at_once] = &mut pictures;
+        let painted = |at_once| Painted { axis, at_once };
+        plain
+            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, &Plain(painted(false)))
+            .expect("it is within range");
+        each.draw::<Recording, NoDepth, _>(&triangle, Cull::None, &painted(false))
+            .expect("it is within range");
+        at_once
+            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, &painted(true))
+            .expect("it is within range");
+        prop_assert_eq!(&plain.pixels, &each.pixels);
+        prop_assert_eq!(&plain.pixels, &at_once.pixels);
+        seen.set(seen.get() + plain.pixels.iter().filter(|drawn| drawn.written).count() as u64);
+        Ok(())
+    });
+    assert!(seen.get() > 10_000, "{} pixels", seen.get());
 }

@@ -31,7 +31,7 @@ pub(crate) struct Patch<'a, W, D: DepthFormat> {
 
 impl<W, D: DepthFormat> Sealed for Patch<'_, W, D> {}
 
-impl<W: Copy, D: DepthFormat> Pixels<W> for Patch<'_, W, D> {
+impl<W: Copy, D: DepthFormat, Q: Quality> Pixels<W, Q> for Patch<'_, W, D> {
     fn is_gray(&self) -> bool {
         self.setup.gray
     }
@@ -40,7 +40,7 @@ impl<W: Copy, D: DepthFormat> Pixels<W> for Patch<'_, W, D> {
         self.draw(&Each::new(|[]: [i32; 0]| word));
     }
 
-    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
         self.draw(fill);
     }
 }

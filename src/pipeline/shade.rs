@@ -138,31 +138,59 @@ pub trait Shader<F: PixelFormat> {
 
     /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
     /// ways to colour a pixel may do so here, once for many.
-    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
+    fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {
         let gray = pixels.is_gray();
         match self.inputs() {
             Inputs::None => pixels.fill_evenly(self.color(&Varying::default())),
             Inputs::Uv => {
-                pixels.shade::<Self::Quality, 2>(|[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])));
+                pixels.shade(|[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])));
             }
             Inputs::Color if gray => {
-                pixels.shade::<Self::Quality, 1>(|[c]| self.color(&Varying::new([0, 0, c, c, c])));
+                pixels.shade(|[c]| self.color(&Varying::new([0, 0, c, c, c])));
             }
             Inputs::Color => {
-                pixels.shade::<Self::Quality, 3>(|[r, g, b]| self.color(&Varying::new([0, 0, r, g, b])));
+                pixels.shade(|[r, g, b]| self.color(&Varying::new([0, 0, r, g, b])));
             }
             Inputs::UvColor if gray => {
-                pixels.shade::<Self::Quality, 3>(|[u, v, c]| self.color(&Varying::new([u, v, c, c, c])));
+                pixels.shade(|[u, v, c]| self.color(&Varying::new([u, v, c, c, c])));
             }
             Inputs::UvColor => {
-                pixels.shade::<Self::Quality, 5>(|all| self.color(&Varying::new(all)));
+                pixels.shade(|all| self.color(&Varying::new(all)));
             }
         }
     }
 }
 
-/// Pixels side by side, or all of a small triangle, for a [`Shader`] to fill: it says once with what.
-pub trait Pixels<W>: sealed::Sealed + Sized {
+/// Pixels side by side, or all of a small triangle, for a [`Shader`] of quality `Q` to fill with words `W`: it says once with what.
+///
+/// ```
+/// use fixel::embedded_graphics::pixelcolor::Rgb565;
+/// use fixel::{Inputs, Pixels, QuarterPixel, Shader, Varying};
+/// enum Stripes {
+///     Upright,
+///     Level,
+/// }
+/// fn stripe(texels: i32) -> u16 {
+///     if texels & 0x8_0000 == 0 { 0xffff } else { 0x001f } // each 8 texels wide, from bits of I16F16
+/// }
+/// impl Shader<Rgb565> for Stripes {
+///     type Quality = QuarterPixel;
+///     fn inputs(&self) -> Inputs {
+///         Inputs::Uv
+///     }
+///     fn color(&self, at: &Varying) -> u16 {
+///         stripe(if matches!(self, Self::Upright) { at.u } else { at.v }.to_bits())
+///     }
+///     // As `color` alone would do, without a choice at each pixel.
+///     fn paint<P: Pixels<u16, QuarterPixel>>(&self, pixels: P) {
+///         match self {
+///             Self::Upright => pixels.shade(|[u]| stripe(u)),
+///             Self::Level => pixels.shade(|[_, v]| stripe(v)),
+///         }
+///     }
+/// }
+/// ```
+pub trait Pixels<W, Q>: sealed::Sealed + Sized {
     /// Whether the triangle's colours are greys: then there is one attribute for all three channels.
     fn is_gray(&self) -> bool;
 
@@ -170,13 +198,13 @@ pub trait Pixels<W>: sealed::Sealed + Sized {
     fn fill_evenly(self, word: W);
 
     #[doc(hidden)]
-    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
+    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
 
     /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
-    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of attributes that there are
-    /// not, nothing is filled.
+    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of more than five
+    /// attributes nothing is filled.
     #[inline]
-    fn shade<Q: Quality, const N: usize>(self, color: impl Fn([i32; N]) -> W) {
-        self.fill::<Q, N, _>(&Each::new(color));
+    fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
+        self.fill(&Each::new(color));
     }
 }

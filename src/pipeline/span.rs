@@ -58,7 +58,7 @@ pub(crate) struct Run<'a, W> {
 
 impl<W> Sealed for Run<'_, W> {}
 
-impl<W: Copy> Pixels<W> for Run<'_, W> {
+impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
     #[inline]
     fn is_gray(&self) -> bool {
         self.span.setup.gray
@@ -70,7 +70,7 @@ impl<W: Copy> Pixels<W> for Run<'_, W> {
     }
 
     #[inline]
-    fn fill<Q: Quality, const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
         self.span.fill::<Q, N, L>(self.pixels, fill);
     }
 }

@@ -177,32 +177,32 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         }
     }
 
-    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
+    fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
         // `Exact` has no use for coordinates and light in 16 bits.
         let (gray, packed) = (pixels.is_gray(), !Q::EVERY_PIXEL);
         let scale_log2 = self.texture_scale.into();
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => pixels.fill_evenly(F::rgb565(*color)),
             (Surface::Textured(texture), None) => {
-                pixels.fill::<Q, 2, _>(&Texels::<F>::new(texture, scale_log2));
+                pixels.fill::<2, _>(&Texels::<F>::new(texture, scale_log2));
             }
             (Surface::Textured(texture), Some(_)) => match (packed, gray) {
-                (true, true) => pixels.fill::<Q, 3, _>(&LitTexels::<F, Gray>::new(texture, scale_log2)),
+                (true, true) => pixels.fill::<3, _>(&LitTexels::<F, Gray>::new(texture, scale_log2)),
                 (true, false) => {
-                    pixels.fill::<Q, 5, _>(&LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
+                    pixels.fill::<5, _>(&LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
                 }
-                (false, true) => pixels.shade::<Q, 3>(|[u, v, light]| {
-                    lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3]))
-                }),
-                (false, false) => pixels.shade::<Q, 5>(|[u, v, light @ ..]| {
+                (false, true) => {
+                    pixels.shade(|[u, v, light]| lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3])))
+                }
+                (false, false) => pixels.shade(|[u, v, light @ ..]: [i32; 5]| {
                     lit::<F>(texture.fetch(u >> 16, v >> 16), whole(light))
                 }),
             },
             (Surface::Flat(_) | Surface::Gouraud, _) => match (packed, gray) {
-                (true, true) => pixels.fill::<Q, 1, _>(&Colors::<F, Gray>::NEW),
-                (true, false) => pixels.fill::<Q, 3, _>(&Colors::<F, RedBlueGreen>::NEW),
-                (false, true) => pixels.shade::<Q, 1>(|[gray]| color::<F>(whole([gray; 3]))),
-                (false, false) => pixels.shade::<Q, 3>(|rgb| color::<F>(whole(rgb))),
+                (true, true) => pixels.fill::<1, _>(&Colors::<F, Gray>::NEW),
+                (true, false) => pixels.fill::<3, _>(&Colors::<F, RedBlueGreen>::NEW),
+                (false, true) => pixels.shade(|[gray]| color::<F>(whole([gray; 3]))),
+                (false, false) => pixels.shade(|rgb: [i32; 3]| color::<F>(whole(rgb))),
             },
         }
     }
@@ -285,8 +285,8 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
         F::rgb565(self.texture.fetch(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
     }
 
-    fn paint<P: Pixels<F::Word>>(&self, pixels: P) {
-        pixels.fill::<Q, 2, _>(&Texels::<F>::new(&self.texture, self.texture_scale.into()));
+    fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
+        pixels.fill::<2, _>(&Texels::<F>::new(&self.texture, self.texture_scale.into()));
     }
 }
 
