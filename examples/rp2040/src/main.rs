@@ -55,7 +55,7 @@ static PIXELS: [ConstStaticCell<[u16; WORDS]>; 2 * CORES] =
 /// The depth of what a core draws.
 static DEPTH: [ConstStaticCell<[u16; WORDS]>; CORES] = [const { ConstStaticCell::new([0; WORDS]) }; CORES];
 
-/// A draw call takes up to 1.65 KiB.
+/// Rendering takes up to 1.5 KiB of it.
 static CORE1_STACK: Stack<1024> = Stack::new();
 
 /// How many frames are recorded.
