@@ -127,6 +127,26 @@ fn every_height_shows_the_bytes_of_a_whole_frame() {
 }
 
 #[test]
+fn a_sorted_list_is_the_same_at_every_height() {
+    let materials = leaked::<QuarterPixel>();
+    let cases = (screen(), scene(6), 1..70_u32);
+    for_all("sorted", 200, cases, |(screen, draws, any)| {
+        let mut list = listed::<_, Rgb565>(screen, &draws, materials);
+        list.sort_back_to_front();
+        let whole = in_bands::<_, Rgb565, NoDepth>(screen, screen.height, &list, &SKY);
+        for rows in [1, 2, 7, 16, any] {
+            prop_assert_eq!(
+                &in_bands::<_, Rgb565, NoDepth>(screen, rows, &list, &SKY),
+                &whole,
+                "{} rows",
+                rows
+            );
+        }
+        Ok(())
+    });
+}
+
+#[test]
 fn two_threads_show_the_same_picture() {
     let materials = leaked::<QuarterPixel>();
     let cases = (screen(), scene(6), prop::sample::select(vec![1_u32, 2, 7, 16, 60]));
@@ -195,15 +215,26 @@ fn a_list_counts_what_a_frame_counts() {
 fn full<const V: usize, const T: usize, const D: usize>(
     screen: Size,
     draws: &[Draw],
+    sorted: u32,
     materials: &'static [Material<'static>; MATERIALS],
     met: &Cell<[u32; 4]>,
 ) -> Result<(), TestCaseError> {
     type Small<const V: usize, const T: usize, const D: usize> =
         DisplayList<'static, V, T, D, Material<'static>, Rgb565>;
+    let picture = |list: &Small<V, T, D>| {
+        let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![(); 64 * 48]);
+        let mut band = Band::<Rgb565, NoDepth>::new(screen, &mut pixels, &mut depth).expect("it fits");
+        band.clear_to(&SKY);
+        list.render(0, &mut band);
+        pixels
+    };
     let mut list = Small::<V, T, D>::new();
     let mut fitted = Vec::new();
-    for draw in draws {
-        let before = list.lengths();
+    for (i, draw) in draws.iter().enumerate() {
+        if sorted >> i & 1 == 1 {
+            list.sort_back_to_front();
+        }
+        let (before, shown) = (list.lengths(), picture(&list));
         let result = draw.add(screen, materials, &mut list);
         let mut counts = met.get();
         match result {
@@ -212,8 +243,19 @@ fn full<const V: usize, const T: usize, const D: usize>(
                 fitted.push(*draw);
             }
             Err(error) => {
+                // Sorted or not.
                 prop_assert_eq!(list.lengths(), before);
-                // It is told truly: with more of just that capacity the list goes further.
+                prop_assert_eq!(picture(&list), shown);
+                // It is told truly.
+                let mut large = listed::<_, Rgb565>(screen, &fitted, materials);
+                prop_assert_eq!(draw.add(screen, materials, &mut large), Ok(()));
+                let [_, triangles, draws] = large.lengths();
+                let is_true = match error {
+                    CapacityError::Vertices { .. } => true,
+                    CapacityError::Triangles { .. } => triangles > T,
+                    CapacityError::Draws { .. } => draws > D,
+                };
+                prop_assert!(is_true, "{} with {} triangles in {} draws", error, triangles, draws);
                 let (kind, capacity) = match error {
                     CapacityError::Vertices { capacity } => (1, capacity),
                     CapacityError::Triangles { capacity } => (2, capacity),
@@ -225,21 +267,19 @@ fn full<const V: usize, const T: usize, const D: usize>(
         }
         met.set(counts);
     }
-    let picture = |list: &Small<V, T, D>| {
-        let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
-        let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("it fits");
-        band.clear_to(&SKY);
-        list.render(0, &mut band);
-        pixels
-    };
-    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, Depth16>(screen, &fitted, materials, &SKY).0);
+    // Drawn once more, as it was drawn: another draw changes the order back.
+    let fits = fitted.first().is_some_and(|draw: &Draw| draw.add(screen, materials, &mut list).is_ok());
+    fitted.extend(fitted.first().copied().filter(|_| fits));
+    if fits {
+        prop_assert_eq!(picture(&list), at_once::<_, Rgb565, NoDepth>(screen, &fitted, materials, &SKY).0);
+    }
     // And it can be used again.
     list.clear();
     prop_assert_eq!(list.lengths(), [0; 3]);
     let again = fitted.first().map_or(Ok(()), |draw| draw.add(screen, materials, &mut list));
     prop_assert_eq!(again, Ok(()));
     let first = &fitted[..fitted.len().min(1)];
-    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, Depth16>(screen, first, materials, &SKY).0);
+    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, NoDepth>(screen, first, materials, &SKY).0);
     Ok(())
 }
 
@@ -247,15 +287,16 @@ fn full<const V: usize, const T: usize, const D: usize>(
 fn a_full_list_names_the_capacity_and_is_as_it_was() {
     let materials = leaked::<QuarterPixel>();
     let met = Cell::new([0; 4]);
-    for_all("full lists", 250, prop::collection::vec(draw(), 1..12), |draws| {
+    let cases = (prop::collection::vec(draw(), 1..12), any::<u32>());
+    for_all("full lists", 250, cases, |(draws, sorted)| {
         let screen = Size::new(64, 48);
-        full::<0, 0, 0>(screen, &draws, materials, &met)?;
-        full::<4, 2, 1>(screen, &draws, materials, &met)?;
-        full::<63, 20, 8>(screen, &draws, materials, &met)?;
-        full::<64, 1000, 8>(screen, &draws, materials, &met)?;
-        full::<90, 60, 8>(screen, &draws, materials, &met)?;
-        full::<1000, 30, 8>(screen, &draws, materials, &met)?;
-        full::<1000, 500, 2>(screen, &draws, materials, &met)
+        full::<0, 0, 0>(screen, &draws, sorted, materials, &met)?;
+        full::<4, 2, 1>(screen, &draws, sorted, materials, &met)?;
+        full::<63, 20, 8>(screen, &draws, sorted, materials, &met)?;
+        full::<64, 1000, 8>(screen, &draws, sorted, materials, &met)?;
+        full::<90, 60, 8>(screen, &draws, sorted, materials, &met)?;
+        full::<1000, 30, 8>(screen, &draws, sorted, materials, &met)?;
+        full::<1000, 500, 2>(screen, &draws, sorted, materials, &met)
     });
     println!("fitted, full of vertices, triangles, draws: {:?}", met.get());
     assert!(met.get().iter().all(|&count| count > 100), "{:?}", met.get());
@@ -394,6 +435,73 @@ fn sending_only_what_changed_shows_the_same_as_sending_all() {
     let [sent, all] = saved.get();
     println!("changes: {sent} of {all} pixels sent, {} %", sent * 100 / all);
     assert!(sent * 10 < all * 9, "nothing is saved");
+}
+
+/// What may happen between frames, and in them.
+#[derive(Clone, Debug)]
+enum Event {
+    /// With the bus failing after so many bands, or not.
+    Frame(Vec<Draw>, Option<u32>),
+    /// Another band, and another height of the screen.
+    Shape(usize, u32),
+    Mark(Rectangle),
+}
+
+#[test]
+fn other_bands_screens_and_marks_leave_nothing_stale() {
+    let materials = leaked::<QuarterPixel>();
+    let mark = (any::<[i32; 2]>(), any::<[u32; 2]>())
+        .prop_map(|([x, y], [w, h])| Event::Mark(Rectangle::new(Point::new(x, y), Size::new(w, h))));
+    let event = prop_oneof![
+        6 => (scene(2), prop::option::weighted(0.2, 0..5_u32)).prop_map(|(draws, fails)| Event::Frame(draws, fails)),
+        2 => (0..3_usize, 0..80_u32).prop_map(|(band, height)| Event::Shape(band, height)),
+        1 => mark,
+    ];
+    let (frames, failed) = (Cell::new(0), Cell::new(0));
+    let cases = (1..60_u32, [1..20_u32, 1..80, 0..3], prop::collection::vec(event, 1..20));
+    for_all("shapes", 300, cases, |(width, rows, events)| {
+        let screen = Size::new(width, 60);
+        let mut memory = rows.map(|rows| vec![0; (width * rows) as usize]);
+        let mut bands = memory.iter_mut().zip(rows).map(|(pixels, rows)| {
+            Band::<Rgb565, NoDepth>::new(Size::new(width, rows), pixels, &mut []).expect("it fits")
+        });
+        let mut bands = [0; 3].map(|_| bands.next().expect("there are three"));
+        let mut display = Display::new(Size::new(width, 80));
+        let mut changes = Changes::<7>::new();
+        let (mut band, mut height) = (0, 48);
+        for event in events {
+            let (draws, fails) = match event {
+                Event::Frame(draws, fails) => (draws, fails),
+                Event::Shape(other, rows) => {
+                    (band, height) = (other, rows);
+                    continue;
+                }
+                Event::Mark(area) => {
+                    changes.mark(&area);
+                    continue;
+                }
+            };
+            let list = listed::<_, Rgb565>(screen, &draws, materials);
+            let mut left = fails.unwrap_or(u32::MAX);
+            let result = list.render_changed(height, &SKY, &mut bands[band], &mut changes, |area, band| {
+                left = left.checked_sub(1).ok_or(Busy)?;
+                display.send(&area, band.colors_in(&area));
+                Ok::<_, Busy>(())
+            });
+            prop_assert_eq!(bands[band].size(), Size::new(width, rows[band]));
+            frames.set(frames.get() + 1);
+            if result.is_err() || rows[band] == 0 {
+                failed.set(failed.get() + 1);
+                continue;
+            }
+            let whole = in_bands::<_, Rgb565, NoDepth>(Size::new(width, height), 16, &list, &SKY).0;
+            let shown = display.pixels.iter().take(whole.len()).map(|color| color.into_storage());
+            prop_assert!(shown.eq(whole), "{} rows of {}", rows[band], height);
+        }
+        Ok(())
+    });
+    println!("shapes: {} frames, {} not shown", frames.get(), failed.get());
+    assert!(failed.get() > 50 && frames.get() > 3 * failed.get());
 }
 
 #[test]

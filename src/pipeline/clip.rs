@@ -211,8 +211,11 @@ impl Clip {
             (to.u, to.v, to.color) = (vertex.u, vertex.v, vertex.color);
             self.project(|axis| vertex.at[axis], &GUARD_BAND, (&mut to.x, &mut to.y, &mut to.q))
         });
+        if !fits {
+            return None;
+        }
         arrange(to.get_mut(..polygon.len())?);
-        fits.then_some(polygon.len())
+        Some(polygon.len())
     }
 
     /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.

@@ -5,7 +5,7 @@
 //! most. A single channel keeps its 16 fraction bits.
 
 use super::fill::{Fill, in_pairs, packed_from, packed_step, plus, shifted, uv_in_units};
-use super::patch::Row;
+use super::patch::{Row, STRAIGHT};
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
 use core::marker::PhantomData;
@@ -133,6 +133,11 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
                 *at = at.wrapping_add(step << C::RUN_LOG2);
             }
         }
+    }
+
+    #[inline]
+    fn longest_row(&self) -> i32 {
+        (1 << C::RUN_LOG2) - 1
     }
 
     #[inline]
@@ -334,6 +339,12 @@ macro_rules! fill_of_lit_texels {
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
                 self.long(pixels, ([u, v], [u_step, v_step]), (light, light_step));
+            }
+
+            #[inline]
+            fn longest_row(&self) -> i32 {
+                let of_texels = if self.is_packed && self.texture.is_large() { 15 } else { STRAIGHT };
+                of_texels.min((1 << C::RUN_LOG2) - 1)
             }
 
             #[inline]

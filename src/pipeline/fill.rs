@@ -1,6 +1,6 @@
 //! Fills: rows of pixels along which attributes are linear.
 
-use super::patch::Row;
+use super::patch::{Row, STRAIGHT};
 use super::walk::LONGEST;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
@@ -32,6 +32,12 @@ pub trait Fill<const N: usize> {
             *pixel = self.pixel(at);
             at = plus(at, step);
         }
+    }
+
+    /// The longest [`Fill::row`] that is exact enough, in steps.
+    #[inline]
+    fn longest_row(&self) -> i32 {
+        STRAIGHT
     }
 
     /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further.
@@ -236,6 +242,12 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             self.run::<false>(block, packed_from([u >> a, v >> b], u_step), step, 0);
             (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
         }
+    }
+
+    /// A step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel.
+    #[inline]
+    fn longest_row(&self) -> i32 {
+        if self.is_packed && self.texture.is_large() { 15 } else { STRAIGHT }
     }
 
     #[inline]

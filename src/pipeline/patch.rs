@@ -70,10 +70,10 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let mut near_w = setup.at(&setup.z, x, rows.row()).0;
         let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, x, rows.row()).0);
         let near_w_step = setup.z.steps[0];
-        let is_bent = setup.longest < STRAIGHT;
+        let (is_bent, longest) = (setup.longest < STRAIGHT, setup.longest.min(fill.longest_row()));
         while let Some((mut start, end)) = rows.next() {
             while start < end {
-                let (m, steps) = (start - x, (end - start - 1).min(setup.longest));
+                let (m, steps) = (start - x, (end - start - 1).min(longest));
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);

@@ -51,7 +51,7 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// The colours are the same whatever part of the screen the target shows (if it begins left of column 0 there are columns
 /// left of it, and rows begin there; else they begin at column 0). They are those of two triangles in a
-/// [`Band`](crate::Band) of 1023 columns without depth, byte for byte, in rows of at most [`run`](Self::run) pixels; in longer
+/// [`Band`](crate::Band) of 1023 columns without depth, byte for byte, in rows of at most [`run`](Self::run) pixels if that is 32 or more; in longer
 /// ones perspective begins anew after every run, as exact (¼ pixel), though not always with the same last bits. From
 /// [`posed`](Self::posed) the same goes for every band as wide as the camera's picture.
 ///

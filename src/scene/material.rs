@@ -183,9 +183,7 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         let scale_log2 = self.texture_scale.into();
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => pixels.fill_evenly(F::rgb565(*color)),
-            (Surface::Textured(texture), None) => {
-                pixels.fill::<2, _>(&Texels::<F>::new(texture, scale_log2));
-            }
+            (Surface::Textured(texture), None) => textured::<F, Q, P>(texture, scale_log2, pixels),
             (Surface::Textured(texture), Some(_)) => match (packed, gray) {
                 (true, true) => pixels.fill::<3, _>(&LitTexels::<F, Gray>::new(texture, scale_log2)),
                 (true, false) => {
@@ -286,7 +284,20 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
     }
 
     fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
-        pixels.fill::<2, _>(&Texels::<F>::new(&self.texture, self.texture_scale.into()));
+        textured::<F, Q, P>(&self.texture, self.texture_scale.into(), pixels);
+    }
+}
+
+fn textured<F, Q, P>(texture: &Texture<'_>, scale_log2: u32, pixels: P)
+where
+    F: PixelFormat,
+    Q: Quality,
+    P: Pixels<F::Word, Q>,
+{
+    if Q::EVERY_PIXEL {
+        pixels.shade(|[u, v]| F::rgb565(texture.fetch(u >> 16, v >> 16)));
+    } else {
+        pixels.fill::<2, _>(&Texels::<F>::new(texture, scale_log2));
     }
 }
 

@@ -9,7 +9,7 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// A display keeps what it was sent. Where neither this frame nor the last has a triangle it shows the background, and keeps on
 /// showing it: only the rest is drawn and sent. That is exact as long as all else stays the same. If the background changes, call
-/// [`Changes::everything`]; if what you draw on top does, [`Changes::mark`] where it was and where it is.
+/// [`Changes::everything`], as after anything else that was sent to the display; if what you draw on top does, [`Changes::mark`] where it was and where it is.
 #[derive(Clone, Debug)]
 pub struct Changes<const BANDS: usize> {
     /// What the last frame drew to.

@@ -19,7 +19,7 @@ use heapless::Vec;
 /// rendered into bands of a few rows, each with its own depth.
 ///
 /// A vertex takes 16 bytes and a triangle 10. Of a mesh only the vertices of triangles that are seen stay in the list, but while
-/// it is drawn there has to be room for all that it names. (A corner that clipping makes takes a vertex, and two if it has both
+/// it is drawn there has to be room for all from the first to the last that it names. (A corner that clipping makes takes a vertex, and two if it has both
 /// colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are culled or out of the viewport
 /// take nothing. Draws of one mesh and one shader in a row count as one.
 ///
@@ -119,8 +119,9 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
         [self.vertices.len(), self.triangles.len(), self.draws.len()]
     }
 
-    /// Changes the order from that of drawing to back to front, by the distance of triangles' middles, and as drawn where it is
-    /// the same: for bands with [`NoDepth`](super::NoDepth). Call it after the last draw; another changes it back.
+    /// Changes the order from that of drawing to back to front, by the depth (near/w) of triangles' middles on the screen, and as
+    /// drawn where it is the same: for bands with [`NoDepth`](super::NoDepth). Call it after the last draw; another changes it
+    /// back.
     ///
     /// Where triangles cut through each other, or long ones overlap in a circle, no order is right: that takes depth.
     pub fn sort_back_to_front(&mut self) {
@@ -129,7 +130,7 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
             |id: u16| (self.triangles.get(usize::from(id)).map_or(0, |triangle| view.nearness(triangle)), id);
         self.index.clear();
         self.index.extend(0..self.triangles.len() as u16);
-        self.index.sort_unstable_by_key(|&id| key(id));
+        sort(&mut self.index, key);
         self.is_sorted = true;
     }
 
@@ -146,7 +147,7 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
-    /// to `flush`, with its area. In the last there may be fewer rows. A DMA channel can send them while the next is drawn:
+    /// to `flush`, with its area. In the last there may be fewer rows. (Swap pixels there, not bands.) A DMA channel can send them while the next is drawn:
     /// [`Band::swap_pixels`] in `flush`.
     ///
     /// # Errors
@@ -307,6 +308,30 @@ fn index_of(window: &Window) -> [u8; 2] {
 fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
     // One branch.
     ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
+}
+
+/// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.
+fn sort(ids: &mut [u16], key: impl Fn(u16) -> (u32, u16)) {
+    let sift = |ids: &mut [u16], mut root: usize| {
+        while 2 * root + 1 < ids.len() {
+            let mut child = 2 * root + 1;
+            if child + 1 < ids.len() && key(ids[child]) < key(ids[child + 1]) {
+                child += 1;
+            }
+            if key(ids[root]) >= key(ids[child]) {
+                return;
+            }
+            ids.swap(root, child);
+            root = child;
+        }
+    };
+    for root in (0..ids.len() / 2).rev() {
+        sift(ids, root);
+    }
+    for end in (1..ids.len()).rev() {
+        ids.swap(0, end);
+        sift(&mut ids[..end], 0);
+    }
 }
 
 /// What a list holds of the rows of a band. Compiled once for all capacities.
