@@ -60,11 +60,11 @@ const LINES: u8 = 0x2b;
 const WRITE_MEMORY: u8 = 0x2c;
 
 /// Draws a frame and sends it: each band while the one before is on its way.
-async fn frame<Spi: SpiDevice>(
+async fn frame<'m, Spi: SpiDevice>(
     list: &Frame<'_>,
     display: &mut Display<Spi>,
-    [one, mut sent]: [&'static mut [u16]; 2],
-    depth: &'static mut [u16],
+    [one, mut sent]: [&'m mut [u16]; 2],
+    depth: &'m mut [u16],
     clock: &Clock,
 ) -> Result<(), Spi::Error> {
     let size = Size::new(SCREEN.width, ROWS);
