@@ -192,22 +192,13 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 /// Out of line: packed runs have the registers.
 impl<F: PixelFormat> Texels<'_, F> {
     #[inline(never)]
-    fn run_unpacked(&self, pixels: &mut [F::Word], mut at: [i32; 2], step: [i32; 2]) {
-        for pixel in pixels {
-            *pixel = self.pixel(at);
-            at = plus(at, step);
-            // Not unrolled: 1 KiB.
-            core::hint::black_box(());
-        }
+    fn run_unpacked(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
+        Each::new(|at| self.pixel(at)).run_long(pixels, at, step);
     }
 
     #[inline(never)]
     fn bent_unpacked(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2], bend: [i32; 2]) {
-        let draw = |pixel: &mut F::Word, [at, step]: &mut [[i32; 2]; 2]| {
-            *pixel = self.pixel(*at);
-            *at = plus(*at, *step);
-        };
-        in_pairs(pixels, [at, step], bend, draw, |[_, step], bend| *step = plus(*step, bend));
+        Each::new(|at| self.pixel(at)).bent(pixels, at, step, bend);
     }
 }
 
