@@ -56,7 +56,8 @@ impl DepthFormat for Depth16 {
     }
 }
 
-/// No depth: what is drawn last is seen. It takes no memory.
+/// No depth: what is drawn last is seen. It takes no memory. A [`DisplayList`](super::DisplayList) can be
+/// [sorted](super::DisplayList::sort_back_to_front) for it.
 #[derive(Clone, Copy, Debug)]
 pub struct NoDepth;
 
