@@ -123,12 +123,15 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
 
     /// Shows nothing but a background, and forgets all depths.
     pub fn clear_to(&mut self, background: &impl Background<F>) {
-        if self.width > 0 {
-            let top = u32::from(self.top);
-            let rows = top..top + u32::from(self.height);
-            for (y, row) in rows.zip(self.pixels.chunks_exact_mut(self.width.into())) {
-                background.fill_row(y, row);
-            }
+        let top = u32::from(self.top);
+        let mut rest = &mut *self.pixels;
+        // `chunks_exact_mut` would divide.
+        for y in top..top + u32::from(self.height) {
+            let Some((row, others)) = rest.split_at_mut_checked(self.width.into()) else {
+                break;
+            };
+            background.fill_row(y, row);
+            rest = others;
         }
         self.clear_depth();
     }
