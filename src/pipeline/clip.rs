@@ -229,9 +229,7 @@ impl Clip {
         vertex: &Vertex,
         to: &mut ScreenVertex,
     ) -> bool {
-        let position = vertex.position.map(|at| i32::from(at.to_bits()));
-        let place = (&mut to.x, &mut to.y, &mut to.q);
-        if !self.project(|axis| to_clip.place(position, axis), &CUT, place) {
+        if !self.locate(to_clip, vertex, (&mut to.x, &mut to.y, &mut to.q)) {
             return false;
         }
         to.u = vertex.uv[0].into();

@@ -4,8 +4,8 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, in_pairs, packed_from, packed_step, plus, shifted, uv_in_units};
-use super::patch::{Row, STRAIGHT};
+use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
+use super::patch::Row;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
 use core::marker::PhantomData;
@@ -23,6 +23,18 @@ pub(crate) trait Channels<const M: usize>: Copy {
     fn pack(channels: [i32; M]) -> Self;
 
     fn plus(self, other: Self) -> Self;
+
+    /// From I16F16.
+    #[inline]
+    fn place(channels: [i32; M]) -> Self {
+        Self::pack(channels.map(|channel| channel >> Self::DROPPED))
+    }
+
+    /// From a step in I16F16, cut towards zero.
+    #[inline]
+    fn step(step: [i32; M]) -> Self {
+        Self::pack(step.map(|step| shifted(step, Self::DROPPED)))
+    }
 
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
@@ -111,14 +123,14 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn pixel(&self, at: [i32; M]) -> F::Word {
-        C::pack(at.map(|channel| channel >> C::DROPPED)).word::<F>()
+        C::place(at).word::<F>()
     }
 
     #[inline]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
-        let packed_step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
+        let packed_step = C::step(step);
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
-            let mut packed = C::pack(at.map(|channel| channel >> C::DROPPED));
+            let mut packed = C::place(at);
             for pixel in pixels {
                 *pixel = packed.word::<F>();
                 packed = packed.plus(packed_step);
@@ -142,8 +154,8 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
 
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
-        let step = C::pack(step.map(|step| shifted(step, C::DROPPED)));
-        let first = C::pack(at.map(|channel| channel >> C::DROPPED));
+        let step = C::step(step);
+        let first = C::place(at);
         row.draw(first, |at| at.plus(step), |at| at.word::<F>());
     }
 
@@ -264,12 +276,12 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     ) where
         C: Channels<M>,
     {
-        let light_step = C::pack(light_step.map(|step| shifted(step, C::DROPPED)));
-        let light = C::pack(light.map(|channel| channel >> C::DROPPED));
+        let light_step = C::step(light_step);
+        let light = C::place(light);
         if !self.is_packed {
             return row.draw(
                 ([u, v], light),
-                |([u, v], light)| ([u.wrapping_add(u_step), v.wrapping_add(v_step)], light.plus(light_step)),
+                |(at, light)| (plus(at, [u_step, v_step]), light.plus(light_step)),
                 |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
             );
         }
@@ -293,10 +305,10 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     {
         let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
         let unit_step = [shifted(step[0], a), shifted(step[1], b)];
-        let packed_light_step = C::pack(light_step.map(|step| shifted(step, C::DROPPED)));
+        let packed_light_step = C::step(light_step);
         let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
-            let packed_light = C::pack(light.map(|channel| channel >> C::DROPPED));
+            let packed_light = C::place(light);
             self.run(block, [[at[0] >> a, at[1] >> b], unit_step], [packed_light, packed_light_step]);
             at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
             for (light, step) in light.iter_mut().zip(light_step) {
@@ -327,7 +339,7 @@ macro_rules! fill_of_lit_texels {
 
             #[inline]
             fn pixel(&self, [u, v, light @ ..]: [i32; $n]) -> F::Word {
-                let light = C::pack(light.map(|channel| channel >> C::DROPPED));
+                let light = C::place(light);
                 lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb())
             }
 
@@ -343,8 +355,7 @@ macro_rules! fill_of_lit_texels {
 
             #[inline]
             fn longest_row(&self) -> i32 {
-                let of_texels = if self.is_packed && self.texture.is_large() { 15 } else { STRAIGHT };
-                of_texels.min((1 << C::RUN_LOG2) - 1)
+                longest_row_of(self.texture, self.is_packed).min((1 << C::RUN_LOG2) - 1)
             }
 
             #[inline]

@@ -43,8 +43,7 @@ pub trait Fill<const N: usize> {
     /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further.
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]) {
-        let next = |at: [i32; N]| core::array::from_fn(|i| at[i].wrapping_add(step[i]));
-        row.draw(at, next, |at| self.pixel(at));
+        row.draw(at, |at| plus(at, step), |at| self.pixel(at));
     }
 
     /// At most `longest` pixels and one side by side, the first at `at`, each `step` further, `bend` being added to that
@@ -235,17 +234,15 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
         }
     }
 
-    /// A step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel.
     #[inline]
     fn longest_row(&self) -> i32 {
-        if self.is_packed && self.texture.is_large() { 15 } else { STRAIGHT }
+        longest_row_of(self.texture, self.is_packed)
     }
 
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
         if !self.is_packed {
-            let next = |[u, v]: [i32; 2]| [u.wrapping_add(u_step), v.wrapping_add(v_step)];
-            return row.draw([u, v], next, |at| self.pixel(at));
+            return row.draw([u, v], |at| plus(at, [u_step, v_step]), |at| self.pixel(at));
         }
         let [a, b] = self.texture.log2();
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
@@ -265,6 +262,12 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
         }
         self.bent_unpacked(pixels, at, step, bend);
     }
+}
+
+/// [`Fill::longest_row`] of texels. Packed, a step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel.
+#[inline]
+pub(super) fn longest_row_of(texture: &Texture<'_>, is_packed: bool) -> i32 {
+    if is_packed && texture.is_large() { 15 } else { STRAIGHT }
 }
 
 /// u (`i` = 0) or v of I16F16 times 2^`scale_log2`, without the bits for which packed coordinates have no room.

@@ -24,7 +24,7 @@ pub(crate) enum Full {
 /// What a shader wants of the vertices.
 pub(crate) struct Style {
     cull: Cull,
-    inputs: Inputs,
+    pub(crate) inputs: Inputs,
     coloring: Coloring,
 }
 

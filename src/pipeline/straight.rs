@@ -35,7 +35,8 @@ pub(super) struct Bend {
 }
 
 impl Bend {
-    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest, and the least.
+    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest,
+    /// and the least.
     /// `None` if distances differ by a quarter.
     #[inline]
     pub(super) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], least: u32) -> Option<Self> {
@@ -99,9 +100,9 @@ impl Bend {
         let most = self.falls[0].max(self.falls[1]);
         // In 1/16 px. Of the longest edge: along that u changes the most.
         let longest = self.lengths[0].max(self.lengths[1]).max(self.lengths[2]);
-        let error = longest * ((most * most) >> 16) <= 12 << 16;
+        let is_exact = longest * ((most * most) >> 16) <= 12 << 16;
         let least = (1u32 << 31) >> self.zeros;
-        if !error || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
+        if !is_exact || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
             return None;
         }
         let middle = self.to_middle();

@@ -35,7 +35,7 @@ pub struct Flushed {
 
 /// A rectangle of pixels; empty unless both ends lie behind both starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Extent {
+pub(super) struct Extent {
     left: i16,
     right: i16,
     top: i16,
@@ -45,14 +45,20 @@ struct Extent {
 const _: () = assert!(size_of::<Extent>() == 8);
 
 impl Extent {
-    const NONE: Self = Self { left: i16::MAX, right: 0, top: i16::MAX, bottom: 0 };
+    pub(super) const NONE: Self = Self { left: i16::MAX, right: 0, top: i16::MAX, bottom: 0 };
     const ALL: Self = Self { left: 0, right: i16::MAX, top: 0, bottom: i16::MAX };
+
+    /// From columns and rows, both with the one behind the last, that fit.
+    pub(super) fn new(bounds: [[i32; 2]; 2]) -> Self {
+        let [[left, right], [top, bottom]] = bounds.map(|ends| ends.map(|end| end as i16));
+        Self { left, right, top, bottom }
+    }
 
     fn is_empty(&self) -> bool {
         self.left >= self.right || self.top >= self.bottom
     }
 
-    fn union(self, other: Self) -> Self {
+    pub(super) fn union(self, other: Self) -> Self {
         if self.is_empty() {
             return other;
         }
@@ -67,7 +73,7 @@ impl Extent {
         }
     }
 
-    fn within(self, window: &Window) -> Self {
+    pub(super) fn within(self, window: &Window) -> Self {
         Self {
             left: self.left.max(window.columns.start as i16),
             right: self.right.min(window.columns.end as i16),
@@ -146,12 +152,7 @@ where
         while band.move_to_part(top, height) {
             let window = band.window();
             let size = band.size();
-            let drawn = self.extent(&window).map_or(Extent::NONE, |[columns, rows]| Extent {
-                left: columns[0] as i16,
-                right: columns[1] as i16,
-                top: rows[0] as i16,
-                bottom: rows[1] as i16,
-            });
+            let drawn = self.extent(&window);
             let last = changes.last.get_mut(number);
             let changed = last.as_deref().copied().unwrap_or(Extent::ALL);
             let changed = changed.union(drawn).union(changes.marked.within(&window)).within(&window);

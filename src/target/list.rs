@@ -1,11 +1,13 @@
 //! A frame for later: what cameras drew, transformed, clipped, culled and lit, to be rendered band by band.
 
 use super::canvas::{Canvas, sealed::Sealed};
+use super::changes::Extent;
+use super::index::{BLOCK, Index, rows_of, sort, steps_of, touch};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
-    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, ROWS_LOG2, Raster,
-    ScreenVertex, Shader, Style, Window, record,
+    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader,
+    Style, Window, record,
 };
 use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
 use core::fmt;
@@ -19,9 +21,9 @@ use heapless::Vec;
 /// rendered into bands of a few rows, each with its own depth.
 ///
 /// A vertex takes 16 bytes and a triangle 10. Of a mesh only the vertices of triangles that are seen stay in the list, but while
-/// it is drawn there has to be room for all from the first to the last that it names. (A corner that clipping makes takes a vertex, and two if it has both
-/// colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are culled or out of the viewport
-/// take nothing. Draws of one mesh and one shader in a row count as one.
+/// it is drawn there has to be room for all from the first to the last that it names. (A corner that clipping makes takes a
+/// vertex, and two if it has both colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are
+/// culled or out of the viewport take nothing. Draws of one mesh and one shader in a row count as one.
 ///
 /// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame. Rendering takes `&self`:
 /// two cores can render two bands.
@@ -147,8 +149,8 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
-    /// to `flush`, with its area. In the last there may be fewer rows. (Swap pixels there, not bands.) A DMA channel can send them while the next is drawn:
-    /// [`Band::swap_pixels`] in `flush`.
+    /// to `flush`, with its area. In the last there may be fewer rows. A DMA channel can send them while the next is drawn:
+    /// [`Band::swap_pixels`] in `flush`. (Swap pixels there, not bands.)
     ///
     /// # Errors
     ///
@@ -177,95 +179,20 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
         Ok(())
     }
 
-    /// The bounding box of what the list draws of some rows and columns: the columns, and the rows, both with the one behind the
-    /// last.
-    pub(super) fn extent(&self, window: &Window) -> Option<[[i32; 2]; 2]> {
+    /// The bounding box of what the list draws of some rows and columns.
+    pub(super) fn extent(&self, window: &Window) -> Extent {
         let view = ListView { vertices: &self.vertices, triangles: &self.triangles };
-        let steps = index_of(window);
-        let mut all: Option<[[i32; 2]; 2]> = None;
-        let mut first = 0;
+        let (rows, mut first, mut all) = (steps_of(window), 0, Extent::NONE);
         for draw in &self.draws {
             let window = window.clone().within(&draw.viewport);
             let end = usize::from(draw.end);
-            for triangle in self.triangles.get(first..end).unwrap_or_default() {
-                if !touch(triangle.rows, steps) {
-                    continue;
-                }
-                let [[left, right], [top, bottom]] = view.bounds(triangle);
-                let (left, right) = (left.max(window.columns.start), right.min(window.columns.end));
-                let (top, bottom) = (top.max(window.rows.start), bottom.min(window.rows.end));
-                if left < right && top < bottom {
-                    let [columns, rows] = all.unwrap_or([[left, right], [top, bottom]]);
-                    all = Some([
-                        [columns[0].min(left), columns[1].max(right)],
-                        [rows[0].min(top), rows[1].max(bottom)],
-                    ]);
-                }
-            }
+            let triangles = self.triangles.get(first..end).unwrap_or_default().iter();
+            all = triangles
+                .filter(|triangle| touch(triangle.rows, rows))
+                .fold(all, |all, triangle| all.union(Extent::new(view.bounds(triangle)).within(&window)));
             first = end;
         }
         all
-    }
-
-    fn record(
-        &mut self,
-        camera: &Camera,
-        mesh: &Mesh<'a>,
-        pose: &Pose,
-        shader: &'a S,
-        stats: &mut impl Count,
-    ) -> Result<(), CapacityError>
-    where
-        S: Shader<F>,
-    {
-        let style = Style::new::<F, S>(shader, pose);
-        let [vertices, triangles, draws] = self.lengths();
-        let recorded = record(
-            &mut self.vertices,
-            &mut self.triangles,
-            mesh,
-            [camera.placement(), pose],
-            camera.projection(),
-            &style,
-            stats,
-        );
-        let draw = Draw {
-            shader,
-            vertices: mesh.vertices(),
-            viewport: camera.projection().viewport,
-            end: self.triangles.len() as u16,
-            inputs: shader.inputs(),
-            is_orthographic: camera.is_orthographic(),
-        };
-        let result = match recorded {
-            Ok(()) if self.triangles.len() == triangles => Ok(()),
-            Ok(()) => match self.draws.last_mut() {
-                Some(last) if last.is_like(&draw) => {
-                    last.end = draw.end;
-                    Ok(())
-                }
-                _ => self.draws.push(draw).map_err(|_| CapacityError::Draws { capacity: D }),
-            },
-            Err(Full::Vertices) => Err(CapacityError::Vertices { capacity: V }),
-            Err(Full::Triangles) => Err(CapacityError::Triangles { capacity: T }),
-        };
-        if result.is_err() {
-            self.vertices.truncate(vertices);
-            self.triangles.truncate(triangles);
-            self.draws.truncate(draws);
-            return result;
-        }
-        if self.is_sorted {
-            self.index.clear();
-            self.is_sorted = false;
-        }
-        let complete = self.index.len().min(triangles / BLOCK);
-        self.index.truncate(complete);
-        for block in self.triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
-            // There is room: as much as for triangles.
-            let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
-        }
-        Ok(())
     }
 }
 
@@ -277,60 +204,6 @@ impl<S> Draw<'_, S> {
             && self.viewport == other.viewport
             && self.inputs == other.inputs
             && self.is_orthographic == other.is_orthographic
-    }
-}
-
-/// How a list finds the triangles of a band.
-enum Index<'l> {
-    /// All are looked at, in this order.
-    Order(&'l [u16]),
-    /// Those of blocks that touch the band.
-    Rows(&'l [u16]),
-}
-
-/// How many triangles have one entry in the index: of s4 in bands of 16 rows 32 cost least, by 0.1 to 0.5 %.
-const BLOCK: usize = 32;
-
-/// The rows that some triangles touch.
-fn rows_of(block: &[ListTriangle]) -> [u8; 2] {
-    block.iter().fold([u8::MAX, 0], |[first, last], triangle| {
-        [first.min(triangle.rows[0]), last.max(triangle.rows[1])]
-    })
-}
-
-/// A window's rows in steps of the index: the first and the last. Of an empty window nonsense.
-fn index_of(window: &Window) -> [u8; 2] {
-    [window.rows.start, window.rows.end - 1].map(|row| (row.clamp(0, 1023) >> ROWS_LOG2) as u8)
-}
-
-/// Whether rows of the index, from the first to the last, touch others.
-#[inline]
-fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
-    // One branch.
-    ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
-}
-
-/// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.
-fn sort(ids: &mut [u16], key: impl Fn(u16) -> (u32, u16)) {
-    let sift = |ids: &mut [u16], mut root: usize| {
-        while 2 * root + 1 < ids.len() {
-            let mut child = 2 * root + 1;
-            if child + 1 < ids.len() && key(ids[child]) < key(ids[child + 1]) {
-                child += 1;
-            }
-            if key(ids[root]) >= key(ids[child]) {
-                return;
-            }
-            ids.swap(root, child);
-            root = child;
-        }
-    };
-    for root in (0..ids.len() / 2).rev() {
-        sift(ids, root);
-    }
-    for end in (1..ids.len()).rev() {
-        ids.swap(0, end);
-        sift(&mut ids[..end], 0);
     }
 }
 
@@ -348,7 +221,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     if window.is_empty() {
         return;
     }
-    let rows = index_of(&window);
+    let rows = steps_of(&window);
     let within = |draw: &Draw<'_, S>| window.clone().within(&draw.viewport);
     let mut ids = 0..draw.end;
     let mut raster = Raster::new(draw.shader, draw.is_orthographic, within(draw), band);
@@ -407,7 +280,54 @@ where
         shader: &'a S,
         stats: &mut impl Count,
     ) -> Result<(), CapacityError> {
-        self.record(camera, mesh, pose, shader, stats)
+        let style = Style::new::<F, S>(shader, pose);
+        let [vertices, triangles, draws] = self.lengths();
+        let recorded = record(
+            &mut self.vertices,
+            &mut self.triangles,
+            mesh,
+            [camera.placement(), pose],
+            camera.projection(),
+            &style,
+            stats,
+        );
+        let draw = Draw {
+            shader,
+            vertices: mesh.vertices(),
+            viewport: camera.projection().viewport,
+            end: self.triangles.len() as u16,
+            inputs: style.inputs,
+            is_orthographic: camera.is_orthographic(),
+        };
+        let result = match recorded {
+            Ok(()) if self.triangles.len() == triangles => Ok(()),
+            Ok(()) => match self.draws.last_mut() {
+                Some(last) if last.is_like(&draw) => {
+                    last.end = draw.end;
+                    Ok(())
+                }
+                _ => self.draws.push(draw).map_err(|_| CapacityError::Draws { capacity: D }),
+            },
+            Err(Full::Vertices) => Err(CapacityError::Vertices { capacity: V }),
+            Err(Full::Triangles) => Err(CapacityError::Triangles { capacity: T }),
+        };
+        if result.is_err() {
+            self.vertices.truncate(vertices);
+            self.triangles.truncate(triangles);
+            self.draws.truncate(draws);
+            return result;
+        }
+        if self.is_sorted {
+            self.index.clear();
+            self.is_sorted = false;
+        }
+        let complete = self.index.len().min(triangles / BLOCK);
+        self.index.truncate(complete);
+        for block in self.triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
+            // There is room: as much as for triangles.
+            let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
+        }
+        Ok(())
     }
 }
 

@@ -7,6 +7,7 @@ mod changes;
 mod depth;
 mod drawing;
 mod format;
+mod index;
 mod list;
 
 pub use background::{Background, Gradient, Picture};

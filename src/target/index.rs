@@ -1,0 +1,57 @@
+//! Which triangles of a list a band has, and in which order.
+
+use crate::pipeline::{ListTriangle, ROWS_LOG2, Window};
+
+/// How a list finds the triangles of a band.
+pub(super) enum Index<'l> {
+    /// All are looked at, in this order.
+    Order(&'l [u16]),
+    /// Those of blocks that touch the band.
+    Rows(&'l [u16]),
+}
+
+/// How many triangles have one entry in the index: of s4 in bands of 16 rows 32 cost least, by 0.1 to 0.5 %.
+pub(super) const BLOCK: usize = 32;
+
+/// The rows that some triangles touch.
+pub(super) fn rows_of(block: &[ListTriangle]) -> [u8; 2] {
+    block.iter().fold([u8::MAX, 0], |[first, last], triangle| {
+        [first.min(triangle.rows[0]), last.max(triangle.rows[1])]
+    })
+}
+
+/// A window's rows in steps of the index: the first and the last. Of an empty window nonsense.
+pub(super) fn steps_of(window: &Window) -> [u8; 2] {
+    [window.rows.start, window.rows.end - 1].map(|row| (row.clamp(0, 1023) >> ROWS_LOG2) as u8)
+}
+
+/// Whether rows of the index, from the first to the last, touch others.
+#[inline]
+pub(super) fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
+    // One branch.
+    ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
+}
+
+/// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.
+pub(super) fn sort(ids: &mut [u16], key: impl Fn(u16) -> (u32, u16)) {
+    let sift = |ids: &mut [u16], mut root: usize| {
+        while 2 * root + 1 < ids.len() {
+            let mut child = 2 * root + 1;
+            if child + 1 < ids.len() && key(ids[child]) < key(ids[child + 1]) {
+                child += 1;
+            }
+            if key(ids[root]) >= key(ids[child]) {
+                return;
+            }
+            ids.swap(root, child);
+            root = child;
+        }
+    };
+    for root in (0..ids.len() / 2).rev() {
+        sift(ids, root);
+    }
+    for end in (1..ids.len()).rev() {
+        ids.swap(0, end);
+        sift(&mut ids[..end], 0);
+    }
+}
