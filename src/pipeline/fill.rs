@@ -177,6 +177,30 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         rest.iter_mut().for_each(|pixel| draw(pixel, step));
     }
 
+    /// Hands on blocks so short that truncated steps do not matter.
+    #[inline(always)]
+    fn in_blocks(
+        &self,
+        mut pixels: &mut [F::Word],
+        [mut u, mut v]: [i32; 2],
+        [u_step, v_step]: [i32; 2],
+        run: impl Fn(&mut [F::Word], u32, u32),
+    ) {
+        let [a, b] = self.texture.log2();
+        // After 64 pixels a truncated step is off by 1/16 texel of 64.
+        let log2 = if self.texture.is_large() { 3 } else { 6 };
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        loop {
+            let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
+            run(block, packed_from([u >> a, v >> b], u_step), step);
+            if rest.is_empty() {
+                return;
+            }
+            pixels = rest;
+            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+        }
+    }
+
     /// Of any size.
     #[inline(never)]
     fn run_checked(&self, pixels: &mut [F::Word], packed: u32, step: u32, bend: u32) {
@@ -220,17 +244,21 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     }
 
     #[inline]
-    fn run_long(&self, pixels: &mut [F::Word], [mut u, mut v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
-        let [a, b] = self.texture.log2();
+    fn run_long(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         if !self.is_packed {
-            return self.run_unpacked(pixels, [u, v], [u_step, v_step]);
+            return self.run_unpacked(pixels, at, step);
         }
-        // After 64 pixels a truncated step is off by 1/16 texel of 64.
-        let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        for block in pixels.chunks_mut(1 << log2) {
-            self.run::<false>(block, packed_from([u >> a, v >> b], u_step), step, 0);
-            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+        let texels = self.texture.texels();
+        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
+            self.in_blocks(pixels, at, step, |block, packed, step| {
+                self.run_sized::<0x1000, false>(block, texels, packed, step, 0);
+            });
+        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
+            self.in_blocks(pixels, at, step, |block, packed, step| {
+                self.run_sized::<0x400, false>(block, texels, packed, step, 0);
+            });
+        } else {
+            self.in_blocks(pixels, at, step, |block, packed, step| self.run_checked(block, packed, step, 0));
         }
     }
 
