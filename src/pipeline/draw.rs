@@ -59,7 +59,10 @@ pub(crate) fn draw<F, D, S>(
         match found {
             Found::Facing(triangle) if !is_faceted => raster.draw_oriented(&triangle, stats),
             Found::Facing(triangle) => placer.draw_faceted(next - 1, &triangle, &mut raster, stats),
-            Found::ToCut => placer.draw_cut(next - 1, &mut cache, &mut raster, stats),
+            Found::ToCut => {
+                let pieces = placer.cut(next - 1, &mut cache, stats);
+                placer.draw_pieces(next - 1, pieces, &cache, &mut raster, stats);
+            }
         }
     }
 }
@@ -202,13 +205,14 @@ impl Placer<'_> {
         }
     }
 
-    /// Draws the pieces of the triangle `of` the mesh, which has to be cut.
+    /// Draws the pieces of the triangle `of` the mesh, which was cut.
     #[cold]
     #[inline(never)]
-    fn draw_cut<F, D, S>(
+    fn draw_pieces<F, D, S>(
         &self,
         of: usize,
-        cache: &mut Cache,
+        pieces: usize,
+        cache: &Cache,
         raster: &mut Raster<'_, '_, F, D, S>,
         stats: &mut impl Count,
     ) where
@@ -216,7 +220,6 @@ impl Placer<'_> {
         D: DepthFormat,
         S: Shader<F>,
     {
-        let pieces = self.cut(of, cache, stats);
         let [first, rest @ ..] = &cache.vertices;
         for pair in rest.windows(2).take(pieces) {
             let [second, third] = pair else { return };
