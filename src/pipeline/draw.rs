@@ -9,6 +9,7 @@ use super::stats::Count;
 use super::straight::Straight;
 use super::transform::ToClip;
 use crate::math::{Pose, Vec3};
+use crate::num::I16F16;
 use crate::scene::{Mesh, Projection, Vertex};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use core::fmt;
@@ -16,8 +17,10 @@ use core::fmt;
 /// How many screen vertices are kept, the oldest making room for the newest: neighbours in a mesh share most of theirs.
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = 8;
-const NOBODY: u32 = u32::MAX;
 const HINTS: usize = 64;
+const NOBODY: u32 = u32::MAX;
+/// u of a vertex that has no attributes yet.
+const MISSING: I16F16 = I16F16::MIN;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F, D, S>(
@@ -42,23 +45,23 @@ pub(crate) fn draw<F, D, S>(
         return;
     }
     let coloring = coloring::<F, S>(shader, pose);
-    let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring };
+    let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring, cull: shader.cull() };
     let mut cache = Cache {
-        vertices: [ScreenVertex::default(); MOST_CORNERS],
-        owners: [NOBODY; CACHED],
         hints: [0; HINTS],
+        owners: [NOBODY; CACHED],
         oldest: 0,
+        vertices: [ScreenVertex::default(); MOST_CORNERS],
     };
     let mut raster = Raster::new(shader, projection.orthographic, window, band);
-    let (cull, is_faceted) = (shader.cull(), coloring.is_faceted());
-    for indices in mesh.triangles() {
-        stats.count(|stats| &mut stats.triangles);
-        let placed = placer.place(indices, &mut cache, stats);
-        match placed {
-            Some(slots) if !is_faceted => raster.draw(cache.corners(slots), cull, stats),
-            _ => {
-                let pieces = if placed.is_some() { 1 } else { placer.cut(indices, &mut cache, stats) };
-                placer.draw_pieces(indices, placed, pieces, &cache, &mut raster, stats);
+    let is_faceted = coloring.is_faceted();
+    let mut next = 0;
+    while let Some(found) = placer.next(&mut next, &mut cache, stats) {
+        match found {
+            Found::Facing(triangle) if !is_faceted => raster.draw_oriented(&triangle, stats),
+            Found::Facing(triangle) => placer.draw_faceted(next - 1, &triangle, &mut raster, stats),
+            Found::ToCut => {
+                let pieces = placer.cut(next - 1, &mut cache, stats);
+                placer.draw_pieces(next - 1, pieces, &cache, &mut raster, stats);
             }
         }
     }
@@ -70,25 +73,47 @@ fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
     shader.coloring(pose)
 }
 
-/// The vertices that were placed last.
+/// The vertices that were placed last. In this order, in which Armv6-M needs the fewest registers to reach them.
+#[repr(C)]
 struct Cache {
-    vertices: [ScreenVertex; MOST_CORNERS],
-    owners: [u32; CACHED],
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
     hints: [u8; HINTS],
+    owners: [u32; CACHED],
     oldest: usize,
+    vertices: [ScreenVertex; MOST_CORNERS],
 }
 
 impl Cache {
-    #[inline]
-    fn corners(&self, slots: [u8; 3]) -> [&ScreenVertex; 3] {
-        slots.map(|slot| &self.vertices[usize::from(slot).min(MOST_CORNERS - 1)])
+    /// The slot of a vertex.
+    #[inline(always)]
+    fn find(&self, index: u16) -> Option<usize> {
+        let slot = usize::from(self.hints[usize::from(index) % HINTS]) % CACHED;
+        (self.owners[slot] == u32::from(index)).then_some(slot)
     }
 
-    #[inline]
-    fn hint(&self, index: u16) -> u8 {
-        self.hints[usize::from(index) % HINTS]
+    /// A vertex's slot from now on: the oldest that is not among `used` (bits).
+    #[inline(always)]
+    fn give(&mut self, index: u16, used: u32) -> usize {
+        let mut slot = self.oldest % CACHED;
+        while used >> slot & 1 != 0 {
+            slot = (slot + 1) % CACHED;
+        }
+        self.oldest = slot + 1;
+        self.owners[slot] = index.into();
+        self.hints[usize::from(index) % HINTS] = slot as u8;
+        slot
     }
+}
+
+#[inline(always)]
+fn in_cache(slot: usize) -> Option<usize> {
+    (slot < CACHED).then_some(slot)
+}
+
+/// A triangle that is not left out.
+enum Found<'a> {
+    Facing(Oriented<'a>),
+    ToCut,
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -98,57 +123,79 @@ struct Placer<'a> {
     to_clip: &'a ToClip,
     clip: &'a Clip,
     coloring: &'a Coloring,
+    cull: Cull,
 }
 
 impl Placer<'_> {
-    /// Where in the cache a triangle's vertices on the screen are, or are now; `None` if it has to be cut.
+    /// The first triangle from `at` on that is not left out. Those that are, more than half of a closed mesh, get no further than
+    /// this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
-    fn place(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[u8; 3]> {
-        let mut slots = [CACHED as u8; 3];
-        for i in 0..3 {
-            let hint = cache.hint(indices[i]);
-            slots[i] = if cache.owners[usize::from(hint) % CACHED] == u32::from(indices[i]) {
-                hint
-            } else {
-                self.place_vertex(indices[i], slots, cache, stats)?
+    fn next<'c>(&self, at: &mut usize, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Found<'c>> {
+        loop {
+            let indices = self.mesh.triangle(*at)?;
+            *at += 1;
+            stats.count(|stats| &mut stats.triangles);
+            let Some(slots) = self.place(indices, cache, stats) else {
+                return Some(Found::ToCut);
             };
+            let corners = slots.map(|slot| position(&cache.vertices[slot]));
+            if self.cull.leaves_out_triangle(corners) {
+                stats.count(|stats| &mut stats.culled);
+                continue;
+            }
+            for i in 0..3 {
+                let vertex = &mut cache.vertices[slots[i]];
+                if vertex.u == MISSING {
+                    self.complete(indices[i], vertex);
+                }
+            }
+            return Some(Found::Facing(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners))));
         }
-        Some(slots)
     }
 
-    /// Puts a vertex in the place of the oldest, but none of this triangle's `slots`; `None` if it has to be cut off.
+    /// Where in the cache a triangle's vertices are, their attributes perhaps [`MISSING`]; `None` if it has to be cut.
+    #[inline(always)]
+    fn place(&self, [a, b, c]: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[usize; 3]> {
+        // Only a vertex that is placed anew is asked whether it has to be cut off.
+        let a = match cache.find(a) {
+            Some(slot) => slot,
+            None => in_cache(self.place_vertex(a, 0, cache, stats))?,
+        };
+        let b = match cache.find(b) {
+            Some(slot) => slot,
+            None => in_cache(self.place_vertex(b, 1 << a, cache, stats))?,
+        };
+        let c = match cache.find(c) {
+            Some(slot) => slot,
+            None => in_cache(self.place_vertex(c, 1 << a | 1 << b, cache, stats))?,
+        };
+        Some([a, b, c])
+    }
+
+    /// Puts a vertex in a slot that is not among `used` (bits); no slot if it has to be cut off, and the triangle with it, which
+    /// empties the cache.
     #[inline(never)]
-    fn place_vertex(
-        &self,
-        index: u16,
-        slots: [u8; 3],
-        cache: &mut Cache,
-        stats: &mut impl Count,
-    ) -> Option<u8> {
-        let owner = u32::from(index);
+    fn place_vertex(&self, index: u16, used: u32, cache: &mut Cache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.transformed);
-        let mut slot = cache.oldest % CACHED;
-        while slots.contains(&(slot as u8)) {
-            slot = (slot + 1) % CACHED;
-        }
-        cache.owners[slot] = NOBODY;
-        let vertex = self.mesh.vertex(index);
-        if !self.clip.place(self.to_clip, self.coloring, vertex, &mut cache.vertices[slot]) {
-            return None;
-        }
-        cache.owners[slot] = owner;
-        cache.hints[usize::from(index) % HINTS] = slot as u8;
-        cache.oldest = slot + 1;
-        Some(slot as u8)
+        let slot = cache.give(index, used);
+        let to = &mut cache.vertices[slot];
+        to.u = MISSING;
+        if self.clip.place_bare(self.to_clip, self.mesh.vertex(index), to) { slot } else { CACHED }
     }
 
-    /// Cuts a triangle, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    /// Gives a vertex its attributes.
+    #[inline(never)]
+    fn complete(&self, index: u16, to: &mut ScreenVertex) {
+        to.set_attributes(self.mesh.vertex(index), self.coloring);
+    }
+
+    /// Cuts the triangle `of` the mesh, in the cache's memory: how many pieces it has, as a fan around the first vertex.
     #[cold]
     #[inline(never)]
-    fn cut(&self, indices: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> usize {
+    fn cut(&self, of: usize, cache: &mut Cache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.clipped);
         cache.owners = [NOBODY; CACHED];
-        let corners = indices.map(|index| self.mesh.vertex(index));
+        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
         match self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) {
             Some(corners) => corners.saturating_sub(2).min(MOST_CORNERS - 2),
             None => {
@@ -158,12 +205,12 @@ impl Placer<'_> {
         }
     }
 
-    /// Draws the pieces of a triangle that was cut, or a triangle that has to be given the light of its face.
+    /// Draws the pieces of the triangle `of` the mesh, which was cut.
+    #[cold]
     #[inline(never)]
     fn draw_pieces<F, D, S>(
         &self,
-        indices: [u16; 3],
-        placed: Option<[u8; 3]>,
+        of: usize,
         pieces: usize,
         cache: &Cache,
         raster: &mut Raster<'_, '_, F, D, S>,
@@ -173,22 +220,24 @@ impl Placer<'_> {
         D: DepthFormat,
         S: Shader<F>,
     {
-        for piece in 0..pieces as u8 {
-            let piece = cache.corners(placed.unwrap_or([0, piece + 1, piece + 2]));
-            if self.coloring.is_faceted() {
-                self.draw_faceted(indices, piece, raster, stats);
-            } else {
-                raster.draw(piece, raster.shader.cull(), stats);
+        let [first, rest @ ..] = &cache.vertices;
+        for pair in rest.windows(2).take(pieces) {
+            let [second, third] = pair else { return };
+            let piece = [first, second, third];
+            match Oriented::new(piece, self.cull) {
+                Some(piece) if self.coloring.is_faceted() => self.draw_faceted(of, &piece, raster, stats),
+                Some(piece) => raster.draw_oriented(&piece, stats),
+                None => stats.count(|stats| &mut stats.culled),
             }
         }
     }
 
-    /// With the light of its face.
+    /// Draws a piece, or all, of the triangle `of` the mesh with the light of its face.
     #[inline(never)]
     fn draw_faceted<F, D, S>(
         &self,
-        indices: [u16; 3],
-        piece: [&ScreenVertex; 3],
+        of: usize,
+        piece: &Oriented<'_>,
         raster: &mut Raster<'_, '_, F, D, S>,
         stats: &mut impl Count,
     ) where
@@ -196,16 +245,33 @@ impl Placer<'_> {
         D: DepthFormat,
         S: Shader<F>,
     {
-        let Some(oriented) = Oriented::new(piece, raster.shader.cull()) else {
-            return stats.count(|stats| &mut stats.culled);
-        };
-        let mut colored = oriented.vertices.map(|vertex| *vertex);
-        let corners = indices.map(|index| self.mesh.vertex(index));
+        let mut colored = piece.vertices.map(|vertex| *vertex);
+        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
         for vertex in &mut colored {
             vertex.color = self.coloring.on_triangle(vertex.color, corners);
         }
-        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: oriented.area }, stats);
+        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: piece.area }, stats);
     }
+}
+
+/// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
+#[inline(always)]
+fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
+    (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+}
+
+/// A triangle of this [`area`], which is not 0, as set-up takes it.
+#[inline(always)]
+fn oriented([a, b, c]: [&ScreenVertex; 3], area: i32) -> Oriented<'_> {
+    let [b, c] = if area < 0 { [c, b] } else { [b, c] };
+    let vertices = if b.q > a.q && b.q >= c.q {
+        [b, c, a]
+    } else if c.q > a.q {
+        [c, a, b]
+    } else {
+        [a, b, c]
+    };
+    Oriented { vertices, area: area.unsigned_abs() }
 }
 
 /// A point of the world on the screen.

@@ -45,12 +45,10 @@ pub(super) struct ToClip {
 /// From a position in the mesh to one clip coordinate.
 ///
 /// The clip units to a step of each position, within ±2¹³, in two halves, so that three products of either with 16 bits
-/// fit an `i32`, and either is loaded only where it is multiplied.
+/// fit an `i32`.
 struct Row {
-    /// Rounded.
-    whole: [i16; 3],
-    /// What that leaves, 15 fraction bits, within ±2¹⁴.
-    rest: [i16; 3],
+    /// In the upper half rounded, in the lower what that leaves, 15 fraction bits, within ±2¹⁴: one load for both.
+    elements: [i32; 3],
     /// In clip units, within ±2²⁹.
     translation: i32,
 }
@@ -58,19 +56,21 @@ struct Row {
 impl Row {
     /// From elements of 15 fraction bits.
     fn new(elements: [i32; 3], translation: i32) -> Self {
-        let whole = elements.map(|element| ((element + (1 << 14)) >> 15) as i16);
-        let rest = core::array::from_fn(|i| (elements[i] - (i32::from(whole[i]) << 15)) as i16);
-        Self { whole, rest, translation }
+        let halves = |element: i32| {
+            let whole = (element + (1 << 14)) >> 15;
+            whole << 16 | i32::from((element - (whole << 15)) as u16)
+        };
+        Self { elements: elements.map(halves), translation }
     }
 
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
-        let dot = |row: &[i16; 3]| {
-            position[0] * i32::from(row[0])
-                + position[1] * i32::from(row[1])
-                + position[2] * i32::from(row[2])
-        };
-        (dot(&self.rest) >> 15) + dot(&self.whole) + self.translation
+        let (mut whole, mut rest) = (self.translation, 0);
+        for (at, halves) in position.into_iter().zip(self.elements) {
+            whole += at * (halves >> 16);
+            rest += at * i32::from(halves as i16);
+        }
+        whole + (rest >> 15)
     }
 }
 

@@ -228,6 +228,15 @@ impl<'a> Mesh<'a> {
         (0..triangles.len()).map(move |i| triangles.at(i))
     }
 
+    /// The triangle `i`, if there are so many.
+    #[inline]
+    pub(crate) fn triangle(&self, i: usize) -> Option<[u16; 3]> {
+        match self.triangles {
+            Triangles::U8(triangles) => triangles.get(i).map(|corners| corners.map(u16::from)),
+            Triangles::U16(triangles) => triangles.get(i).copied(),
+        }
+    }
+
     /// A vertex that a triangle names: the index was checked when the mesh was made.
     #[inline]
     pub(crate) fn vertex(&self, index: u16) -> &'a Vertex {
