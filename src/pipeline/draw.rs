@@ -16,7 +16,7 @@ use core::fmt;
 
 /// How many screen vertices are kept, the oldest making room for the newest: neighbours in a mesh share most of theirs.
 /// (Clipping borrows the memory for the corners of a polygon.)
-const CACHED: usize = 8;
+const CACHED: usize = MOST_CORNERS;
 const HINTS: usize = 64;
 const NOBODY: u32 = u32::MAX;
 /// u of a vertex that has no attributes yet.
@@ -49,8 +49,8 @@ pub(crate) fn draw<F, D, S>(
     let mut cache = Cache {
         hints: [0; HINTS],
         owners: [NOBODY; CACHED],
-        oldest: 0,
-        vertices: [ScreenVertex::default(); MOST_CORNERS],
+        newest: 0,
+        vertices: [ScreenVertex::default(); CACHED],
     };
     let mut raster = Raster::new(shader, projection.orthographic, window, band);
     let is_faceted = coloring.is_faceted();
@@ -79,26 +79,27 @@ struct Cache {
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
     hints: [u8; HINTS],
     owners: [u32; CACHED],
-    oldest: usize,
-    vertices: [ScreenVertex; MOST_CORNERS],
+    newest: usize,
+    vertices: [ScreenVertex; CACHED],
 }
 
 impl Cache {
     /// The slot of a vertex.
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
-        let slot = usize::from(self.hints[usize::from(index) % HINTS]) % CACHED;
-        (self.owners[slot] == u32::from(index)).then_some(slot)
+        let slot = usize::from(self.hints[usize::from(index) % HINTS]);
+        (self.owners.get(slot) == Some(&u32::from(index))).then_some(slot)
     }
 
     /// A vertex's slot from now on: the oldest that is not among `used` (bits).
     #[inline(always)]
     fn give(&mut self, index: u16, used: u32) -> usize {
-        let mut slot = self.oldest % CACHED;
+        let after = |slot| if slot < CACHED - 1 { slot + 1 } else { 0 };
+        let mut slot = after(self.newest);
         while used >> slot & 1 != 0 {
-            slot = (slot + 1) % CACHED;
+            slot = after(slot);
         }
-        self.oldest = slot + 1;
+        self.newest = slot;
         self.owners[slot] = index.into();
         self.hints[usize::from(index) % HINTS] = slot as u8;
         slot

@@ -259,11 +259,11 @@ impl<const V: usize, const T: usize> Builder<V, T> {
     }
 }
 
-/// Column and row of the `i`-th square, in strips of two columns from top to bottom, so that the draw call's cache of 8 vertices
-/// still has a square's upper corners from the row above: three vertices are transformed for four triangles, instead of one for
+/// Column and row of the `i`-th square, in strips of three columns from top to bottom, so that the draw call's cache of 9 vertices
+/// still has a square's upper corners from the row above: two vertices are transformed for three triangles, instead of one for
 /// each when whole rows are drawn.
 const fn in_strips(i: usize, columns: usize, rows: usize) -> (usize, usize) {
-    const WIDTH: usize = 2;
+    const WIDTH: usize = 3;
     let strip = i / (WIDTH * rows);
     let left = strip * WIDTH;
     let width = if columns - left < WIDTH { columns - left } else { WIDTH };
