@@ -70,12 +70,11 @@ impl Slopes {
             12
         };
         let (rise_1, rise_2) = (rise_1 >> dropped, rise_2 >> dropped);
-        let zeros = self.zeros + dropped;
-        let (up, down) = (zeros.saturating_sub(28), 28u32.saturating_sub(zeros));
+        let up = (self.zeros + dropped) as i32 - 28;
         for axis in 0..2 {
             let [b, c] = self.edges[axis];
             let slope = mul_17(rise_1 * b + rise_2 * c, self.reciprocal);
-            let step = (slope << (up & 31)) >> (down & 31);
+            let step = if up < 0 { slope >> (-up & 31) } else { slope << (up & 31) };
             plane.steps[axis] = step;
             plane.origin = plane
                 .origin
