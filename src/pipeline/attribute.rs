@@ -32,21 +32,21 @@ impl Attribute {
     /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
     #[inline]
     pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
+        let mut attribute = Self::default();
+        let rise = attribute.set_range(at, scale_log2);
+        (attribute, rise)
+    }
+
+    /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
+    #[inline]
+    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        let range = high.wrapping_sub(low) as u32;
-        (
-            Self {
-                plane: Plane::default(),
-                bend: [0; 3],
-                shift: 0,
-                least: at[0] + low,
-                low,
-                range,
-                scale_log2,
-            },
-            rise,
-        )
+        self.least = at[0] + low;
+        self.low = low;
+        self.range = high.wrapping_sub(low) as u32;
+        self.scale_log2 = scale_log2;
+        rise
     }
 
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
@@ -118,12 +118,25 @@ impl Attribute {
     #[cold]
     #[inline(never)]
     fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+        let (at, step) = self.unscaled_border(first, last, steps);
+        (at << self.scale_log2, step << self.scale_log2)
+    }
+
+    /// As [`Attribute::along`], without `scale_log2`.
+    #[inline]
+    pub(super) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
+        if first <= self.range && last <= self.range {
+            return (self.least.wrapping_add_unsigned(first), step);
+        }
+        self.unscaled_border(first as i32, last as i32, steps)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
         let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
-        let rise = last - first;
-        (
-            (self.least + first) << self.scale_log2,
-            step_of(rise, inverse(steps.max(1) as usize)) << self.scale_log2,
-        )
+        (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
     }
 }
 

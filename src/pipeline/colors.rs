@@ -279,19 +279,20 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         let light_step = C::step(light_step);
         let light = C::place(light);
         if !self.is_packed {
+            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(
-                ([u, v], light),
-                |(at, light)| (plus(at, [u_step, v_step]), light.plus(light_step)),
+                (at, light),
+                |(at, light)| (plus(at, step), light.plus(light_step)),
                 |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
             );
         }
-        let [a, b] = self.texture.log2();
+        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        row.draw(
-            (packed_from([u >> a, v >> b], u_step), light),
-            |(packed, light)| (packed.wrapping_add(step), light.plus(light_step)),
-            |(packed, light)| lit::<F>(self.texture.fetch_packed(packed), light.rgb()),
-        );
+        let first = packed_from([u >> a, v >> b], u_step);
+        let plus = |light: C| light.plus(light_step);
+        row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {
+            lit::<F>(texel, light.rgb())
+        });
     }
 
     #[inline]

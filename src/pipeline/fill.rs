@@ -40,9 +40,12 @@ pub trait Fill<const N: usize> {
         STRAIGHT
     }
 
-    /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further.
+    /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further, both without the row's
+    /// `scale_log2`.
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]) {
+        let [at, step]: [[i32; N]; 2] =
+            [at, step].map(|value| core::array::from_fn(|i| value[i] << row.scale_log2(i)));
         row.draw(at, |at| plus(at, step), |at| self.pixel(at));
     }
 
@@ -270,16 +273,13 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
         if !self.is_packed {
-            return row.draw([u, v], |at| plus(at, [u_step, v_step]), |at| self.pixel(at));
+            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
+            return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
-        let [a, b] = self.texture.log2();
+        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
         let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         let first = packed_from([u >> a, v >> b], u_step);
-        row.draw(
-            first,
-            |packed| packed.wrapping_add(step),
-            |packed| F::rgb565(self.texture.fetch_packed(packed)),
-        );
+        row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
     }
 
     #[inline]

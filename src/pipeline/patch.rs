@@ -12,6 +12,7 @@ use super::setup::TriangleSetup;
 use super::shade::{Pixels, Quality, sealed::Sealed};
 use super::span::Rows;
 use crate::num::U1F31;
+use crate::scene::Texture;
 use crate::target::DepthFormat;
 
 /// The longest row of a straight triangle, in steps.
@@ -66,14 +67,17 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let depth = depth.get_mut(..length).unwrap_or_default();
         // At corner 0's column, and from its row on.
         let [x, y] = setup.corners[0].map(|at| at >> 4);
-        let mut n = rows.row() - y;
         let mut near_w = setup.at(&setup.z, x, rows.row()).0;
         let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, x, rows.row()).0);
         let near_w_step = setup.z.steps[0];
-        let (is_bent, longest) = (setup.longest < STRAIGHT, setup.longest.min(fill.longest_row()));
-        while let Some((mut start, end)) = rows.next() {
-            while start < end {
-                let (m, steps) = (start - x, (end - start - 1).min(longest));
+        // Hidden, so that the compiler keeps one number.
+        let longest = core::hint::black_box(setup.longest.min(fill.longest_row()));
+        let is_bent = setup.longest < STRAIGHT;
+        let scale_log2 = attributes.first().map_or(0, |attribute| attribute.scale_log2);
+        row = row.wrapping_add(x as usize);
+        rows.each_simple([x, y], |n, mut m, end| {
+            while m < end {
+                let steps = (end - m - 1).min(longest);
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
@@ -86,24 +90,28 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    (at[i], step[i]) = attribute.along((value, right), steps);
+                    (at[i], step[i]) = attribute.unscaled((value, right), steps);
                 }
-                let first = row.wrapping_add(start as usize);
-                let range = first..first.wrapping_add(steps as usize + 1);
-                let depth = if D::ALWAYS_PASSES { Some(&mut [][..]) } else { depth.get_mut(range.clone()) };
-                if let (Some(pixels), Some(depth)) = (pixels.get_mut(range), depth) {
+                let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
+                // In two steps: the end of a range is checked more dearly.
+                let part = |all| <[_]>::get_mut(all, first..).and_then(|rest| rest.get_mut(..count));
+                let depth = if D::ALWAYS_PASSES {
+                    Some(&mut [][..])
+                } else {
+                    depth.get_mut(first..).and_then(|rest| rest.get_mut(..count))
+                };
+                if let (Some(pixels), Some(depth)) = (part(&mut *pixels), depth) {
                     let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
-                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step }, at, step);
+                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
                 }
-                start += steps + 1;
+                m += steps + 1;
             }
             row = row.wrapping_add(width);
-            n += 1;
             near_w = near_w.wrapping_add_signed(setup.z.steps[1]);
             for (value, attribute) in values.iter_mut().zip(attributes) {
                 *value = value.wrapping_add_signed(attribute.plane.steps[1]);
             }
-        }
+        });
     }
 }
 
@@ -115,9 +123,17 @@ pub struct Row<'a, W, D: DepthFormat> {
     /// With 31 fraction bits, at the first pixel.
     near_w: u32,
     near_w_step: i32,
+    /// Of u and v, if there are any: as [`Attribute`](super::attribute::Attribute) has it.
+    scale_log2: u32,
 }
 
 impl<W, D: DepthFormat> Row<'_, W, D> {
+    /// By how much attribute `i` is to be shifted left.
+    #[inline]
+    pub(super) fn scale_log2(&self, i: usize) -> u32 {
+        if i < 2 { self.scale_log2 & 31 } else { 0 }
+    }
+
     /// Draws what is visible of it: the word of a place, the first being `at`.
     #[inline]
     pub(super) fn draw<P: Copy>(mut self, mut at: P, next: impl Fn(P) -> P, word: impl Fn(P) -> W) {
@@ -139,4 +155,35 @@ impl<W, D: DepthFormat> Row<'_, W, D> {
             core::hint::black_box(());
         }
     }
+
+    /// As [`Row::draw`], of texels at packed coordinates, the first at `at`, each `step` further, and what else goes along.
+    ///
+    /// Of the sizes for which [`Texels`](super::fill::Texels) has an array no index has to be checked.
+    #[inline]
+    pub(super) fn draw_texels<P: Copy>(
+        self,
+        texture: &Texture<'_>,
+        [at, step]: [u32; 2],
+        other: P,
+        next: impl Fn(P) -> P,
+        word: impl Fn(u16, P) -> W,
+    ) {
+        let next = |(at, other): (u32, P)| (at.wrapping_add(step), next(other));
+        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texture.texels()) {
+            let texel = sized(texture, texels);
+            self.draw((at, other), next, |(at, other)| word(texel(at), other));
+        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texture.texels()) {
+            let texel = sized(texture, texels);
+            self.draw((at, other), next, |(at, other)| word(texel(at), other));
+        } else {
+            self.draw((at, other), next, |(at, other)| word(texture.fetch_packed(at), other));
+        }
+    }
+}
+
+/// The texel at packed coordinates of a texture of so many.
+#[inline]
+fn sized<const COUNT: usize>(texture: &Texture<'_>, texels: &[u16; COUNT]) -> impl Fn(u32) -> u16 {
+    let [mask, multiplier] = texture.mask_and_multiplier();
+    move |packed| texels[((packed & mask).wrapping_mul(multiplier) >> (32 - COUNT.trailing_zeros())) as usize]
 }

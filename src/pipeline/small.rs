@@ -40,10 +40,28 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// From the value at corner 0 and the rise from there to corners 1 and 2; a step has to fit 32 bits.
-    #[inline]
-    fn plane(&self, mut origin: u32, rise: [i32; 2]) -> Plane {
-        let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
+    /// As [`Slopes::set`], for a caller that does little else.
+    ///
+    /// Not inlined: one in which all of this is at hand keeps most of it on the stack.
+    #[inline(never)]
+    fn set_plane(&self, plane: &mut Plane, rise_1: i32, rise_2: i32) {
+        self.set(plane, rise_1, rise_2);
+    }
+
+    /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
+    #[inline(never)]
+    fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
+        let rise = attribute.set_range(*at, scale_log2);
+        attribute.plane.origin = attribute.origin();
+        self.set(&mut attribute.plane, rise[0], rise[1]);
+        attribute.range < 1 << 27
+    }
+
+    /// Sets a plane, whose `origin` is the value at corner 0 yet, by the rise from there to corners 1 and 2; a step has to fit 32
+    /// bits.
+    #[inline(always)]
+    fn set(&self, plane: &mut Plane, rise_1: i32, rise_2: i32) {
+        let size = rise_1.unsigned_abs() | rise_2.unsigned_abs();
         let dropped = if size < 1 << 19 {
             0
         } else if size < 1 << 27 {
@@ -51,19 +69,18 @@ impl Slopes {
         } else {
             12
         };
-        let rise = rise.map(|rise| rise >> dropped);
-        let (up, down) =
-            ((self.zeros + dropped).saturating_sub(28), 28u32.saturating_sub(self.zeros + dropped));
-        let steps = self.edges.map(|[b, c]| {
-            let slope = mul_17(rise[0] * b + rise[1] * c, self.reciprocal);
-            (slope << (up & 31)) >> (down & 31)
-        });
-        for (axis, step) in steps.into_iter().enumerate() {
-            origin = origin
+        let (rise_1, rise_2) = (rise_1 >> dropped, rise_2 >> dropped);
+        let up = (self.zeros + dropped) as i32 - 28;
+        for axis in 0..2 {
+            let [b, c] = self.edges[axis];
+            let slope = mul_17(rise_1 * b + rise_2 * c, self.reciprocal);
+            let step = if up < 0 { slope >> (-up & 31) } else { slope << (up & 31) };
+            plane.steps[axis] = step;
+            plane.origin = plane
+                .origin
                 .wrapping_add_signed((step >> 4) * self.to_center[axis])
                 .wrapping_sub(self.pixel[axis].wrapping_mul(step) as u32);
         }
-        Plane { origin, steps }
     }
 }
 
@@ -83,15 +100,6 @@ impl TriangleSetup {
         if most > (1 << 31) - 2048 || least < (1 << 15) + 2048 || most - least >= 1 << 27 {
             return false;
         }
-        let bend = match needs.straight {
-            Straight::Below(limit) if needs.inputs != Inputs::None => {
-                let Some(bend) = Bend::new(&edges, q, least) else {
-                    return false;
-                };
-                if bend.is_straight(limit) { None } else { Some((bend, limit)) }
-            }
-            _ => None,
-        };
         let (reciprocal, zeros) = short_of(triangle.area);
         let slopes = Slopes {
             edges,
@@ -101,51 +109,73 @@ impl TriangleSetup {
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
         // Also where no depth is tested: pixels are not to depend on that.
-        self.z = slopes.plane(q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        self.z.origin = q[0];
+        slopes.set_plane(&mut self.z, q[1].wrapping_sub(q[0]) as i32, q[2].wrapping_sub(q[0]) as i32);
         // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
         let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
         if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
             return false;
         }
-        let Some(straight) = self.set_linear(triangle, needs, &slopes, bend.as_ref()) else {
-            return false;
-        };
-        self.straight = straight;
-        if let Some((bend, _)) = &bend
-            && !straight
-            && simple
-            && !needs.every_pixel
-            && let Some(slopes_of_q) = bend.slopes(self.z.steps)
-        {
-            self.set_bent(triangle, needs, &slopes, bend, slopes_of_q);
+        match needs.straight {
+            Straight::Below(limit)
+                if needs.inputs != Inputs::None && !Bend::is_needless(&edges, q, least, limit) =>
+            {
+                self.set_bending(triangle, needs, &slopes, &q, limit, simple)
+            }
+            _ => {
+                self.straight = true;
+                self.set_linear(triangle, needs, &slopes)
+            }
         }
-        self.straight
     }
 
-    /// Makes attributes linear on the screen, and finds out whether that is good enough. `None` if one changes too much.
-    ///
-    /// Not inlined: what this needs of the stack need not be there when attributes are bent.
+    /// Sets attributes that may bend: false, and nothing of use done, where they do too much.
     #[inline(never)]
-    fn set_linear(
+    fn set_bending(
         &mut self,
         triangle: &Oriented<'_>,
         needs: &Needs,
         slopes: &Slopes,
-        bend: Option<&(Bend, u32)>,
-    ) -> Option<bool> {
-        let mut straight = true;
-        let fits = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let (mut attribute, rise) = Attribute::between(at, scale_log2);
-            if attribute.range >= 1 << 27 {
-                return false;
-            }
-            attribute.plane = slopes.plane(attribute.origin(), rise);
-            self.attributes[i] = attribute;
-            straight = straight
-                && bend.is_none_or(|(bend, limit)| bend.is_straight_for(*limit, rise, 0x10000 >> scale_log2));
-            true
-        });
-        fits.then_some(straight)
+        q: &[u32; 3],
+        limit: u32,
+        simple: bool,
+    ) -> bool {
+        let Some(bend) = Bend::new(&slopes.edges, *q, q[1].min(q[2])) else {
+            return false;
+        };
+        self.straight = bend.is_straight(limit) || self.are_straight(triangle, needs, &bend, limit);
+        if self.straight {
+            return self.set_linear(triangle, needs, slopes);
+        }
+        if simple
+            && !needs.every_pixel
+            && let Some(slopes_of_q) = bend.slopes(self.z.steps)
+            && self.set_linear(triangle, needs, slopes)
+        {
+            self.set_bent(triangle, needs, slopes, &bend, slopes_of_q);
+        }
+        self.straight
+    }
+
+    /// Whether attributes that are linear on the screen are good enough.
+    #[inline(never)]
+    fn are_straight(&self, triangle: &Oriented<'_>, needs: &Needs, bend: &Bend, limit: u32) -> bool {
+        needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
+            let rise = [b - a, c - a];
+            (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
+                && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
+        })
+    }
+
+    /// Makes attributes linear on the screen: false if one changes too much.
+    ///
+    /// Not inlined: what this needs of the stack need not be there when attributes are bent.
+    #[inline(never)]
+    fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
+        let attributes = &mut self.attributes;
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
+        })
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.
@@ -164,15 +194,19 @@ impl TriangleSetup {
             self.longest >>= 1;
         }
         let [x, y] = slopes.to_center;
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let (mut attribute, rise) = Attribute::between(at, scale_log2);
-            let [right, down] = self.attributes[i].plane.steps;
+        needs.each_attribute(triangle, self.gray, |i, at, _| {
+            let Some(attribute) = self.attributes.get_mut(i) else {
+                return false;
+            };
+            let rise = [at[1] - at[0], at[2] - at[0]];
+            let [right, down] = attribute.plane.steps;
             let xx = -mul_16_signed(right, q_right);
             let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
             let yy = -mul_16_signed(down, q_down);
             // So much that the corners are what they were.
-            attribute.plane =
-                slopes.plane(attribute.origin(), [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i))));
+            attribute.plane.origin = attribute.origin();
+            let [rise_1, rise_2] = [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i)));
+            slopes.set_plane(&mut attribute.plane, rise_1, rise_2);
             // From corner 0's pixel instead of corner 0.
             let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
             let [m, n] = slopes.pixel;
@@ -185,7 +219,6 @@ impl TriangleSetup {
                 *step = step.wrapping_add(more);
             }
             attribute.bend = [xx, xy, yy];
-            self.attributes[i] = attribute;
             true
         });
     }

@@ -94,7 +94,11 @@ impl Edge {
     /// Both ends in 1/16 px, `top` above `bottom`, and the first row wanted, which lies between.
     #[inline(always)]
     fn set(&mut self, is_long: bool, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
-        if is_long { self.long(top, bottom, row) } else { self.short(top, bottom, row) }
+        if is_long {
+            return self.long(top, bottom, row);
+        }
+        self.x = (top[0] + 8) << (FRACTION - 4);
+        self.short(bottom[0] - top[0], bottom[1] - top[1], row * 16 + 8 - top[1]);
     }
 
     /// Likewise.
@@ -111,15 +115,15 @@ impl Edge {
         *self = Self { x: x << FRACTION, slope: slope << FRACTION, remainder, slope_remainder, divisor };
     }
 
-    /// Likewise, at most 32 pixels wide and less high: without a remainder.
+    /// From an `x` that is half a pixel right of the upper end, by how far right the lower end lies and how far below it and the
+    /// first row's centres (1/16 px): at most 32 pixels wide and less high, without a remainder.
     ///
     /// The number is a multiple of 1/16dy, rounded up. 2⁻¹⁴ less, half of the least such step, may be wrong by just as much. The
     /// reciprocal is, by 2⁻²⁰, and makes |dx|·2⁻²⁴ ≤ 2⁻¹⁵ of x; the slope's rounding makes 2⁻²¹ a row, 2⁻¹⁶ at most.
     #[inline(never)]
-    fn short(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
-        let slope = quotient_of_10_bits(bottom[0] - top[0], bottom[1] - top[1]);
-        let below = row * 16 + 8 - top[1];
-        self.x = ((top[0] + 8) << (FRACTION - 4)) + ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
+    fn short(&mut self, dx: i32, dy: i32, below: i32) {
+        let slope = quotient_of_10_bits(dx, dy);
+        self.x += ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
         self.slope = slope;
     }
 
@@ -159,16 +163,22 @@ pub(crate) struct Rows {
 
 impl Rows {
     /// Those of a triangle whose corners run clockwise.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) {
-        // From the top down the right to `next`, and down the left to `last`.
-        let [top, next, last] = if a[1] <= b[1] && a[1] <= c[1] {
-            [a, b, c]
+        if a[1] <= b[1] && a[1] <= c[1] {
+            self.start_at(a, b, c, window);
         } else if b[1] <= c[1] {
-            [b, c, a]
+            self.start_at(b, c, a, window);
         } else {
-            [c, a, b]
-        };
+            self.start_at(c, a, b, window);
+        }
+    }
+
+    /// From the top down the right to `next`, and down the left to `last`.
+    ///
+    /// Not inlined: on a Cortex-M0+ it takes less to hand on three places than to choose between corners time and again.
+    #[inline(never)]
+    fn start_at(&mut self, top: &[i32; 2], next: &[i32; 2], last: &[i32; 2], window: &Window) {
         let (next_row, last_row) = (first_row(next[1]), first_row(last[1]));
         let Range { start, end } = window.columns;
         self.row = first_row(top[1]).max(window.rows.start);
@@ -235,6 +245,27 @@ impl Rows {
         }
         self.row += 1;
         Some((self.left.next(), self.right.next()))
+    }
+
+    /// Hands on every row where [`Rows::are_simple`], from a pixel on: how far it lies below that, and how far its first column
+    /// and the one behind the last lie to the right. It may be empty.
+    ///
+    /// Edges are on the stack here, which takes no register to find them.
+    #[inline(always)]
+    pub(super) fn each_simple(&mut self, [x, y]: [i32; 2], mut emit: impl FnMut(i32, i32, i32)) {
+        let beside = |edge: &Edge| Edge { x: edge.x.wrapping_sub(x << FRACTION), ..*edge };
+        let (mut left, mut right) = (beside(&self.left), beside(&self.right));
+        loop {
+            for row in self.row - y..self.knee - y {
+                emit(row, left.next(), right.next());
+            }
+            if self.knee >= self.end {
+                return;
+            }
+            let edge = if self.lower_is_right { &mut right } else { &mut left };
+            *edge = beside(&self.lower);
+            (self.row, self.knee) = (self.row.max(self.knee), self.end);
+        }
     }
 
     /// Hands on every row: the row, the first column and the one behind the last.
@@ -320,7 +351,7 @@ mod tests {
                 // As the window may have it, from any row on.
                 let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);
                 if first < end {
-                    edge.short(&top, &bottom, first);
+                    edge.set(false, &top, &bottom, first);
                 }
                 for row in first..end {
                     let exactly = (top[0] - 8) * dy + (row * 16 + 8 - top[1]) * dx + 16 * dy - 1;

@@ -59,6 +59,27 @@ impl Bend {
         })
     }
 
+    /// As [`Bend::new`] and [`Bend::is_straight`], without a division: it finds most of those that are, where q falls by less than
+    /// 2²⁷ and edges are shorter than 2¹².
+    #[inline(always)]
+    pub(super) fn is_needless(
+        [across, down]: &[[i32; 2]; 2],
+        [q0, q1, q2]: [u32; 3],
+        least: u32,
+        limit: u32,
+    ) -> bool {
+        // 15 bits times 16; 12 times 15 and a bit. Falls are rounded up.
+        if q0 - least >= least >> 2 {
+            return false;
+        }
+        let most = ((least >> 16) * limit) >> 8;
+        let is_short =
+            |x: i32, y: i32, fall: u32| (x.unsigned_abs() + y.unsigned_abs()) * ((fall >> 12) + 1) <= most;
+        is_short(across[1], down[1], q0 - q1)
+            && is_short(across[0], down[0], q0 - q2)
+            && is_short(across[0] + across[1], down[0] + down[1], q1.abs_diff(q2))
+    }
+
     /// Whether all attributes are straight.
     #[inline]
     pub(super) fn is_straight(&self, limit: u32) -> bool {
