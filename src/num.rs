@@ -47,7 +47,7 @@ const fn wide_split(a: i32, b: i32) -> i64 {
 /// `a · b / 2¹⁶` rounded down, for a `b` of 0 … 2¹⁶: two short products on Armv6-M.
 #[inline]
 pub(crate) const fn mul_16(a: i32, b: u32) -> i32 {
-    if IS_ARMV6M { mul_16_split(a, b) } else { ((a as i64 * b as i64) >> 16) as i32 }
+    if IS_ARMV6M { mul_16_split(a, b) } else { ((a as i64 * b as i32 as i64) >> 16) as i32 }
 }
 
 #[inline]
@@ -73,7 +73,7 @@ const fn mul_16_signed_split(a: i32, b: i32) -> i32 {
 /// `a · b / 2¹⁶` rounded down, for an even part of `a` within ±2³⁰ and a `b` of 0 … 2¹⁷: likewise.
 #[inline]
 pub(crate) const fn mul_17(a: i32, b: u32) -> i32 {
-    if IS_ARMV6M { mul_17_split(a, b) } else { (((a & !1) as i64 * b as i64) >> 16) as i32 }
+    if IS_ARMV6M { mul_17_split(a, b) } else { (((a & !1) as i64 * b as i32 as i64) >> 16) as i32 }
 }
 
 #[inline]
