@@ -56,6 +56,7 @@ struct Recorder<'l, 'm> {
     base: u16,
     /// The mesh's slots.
     own: core::ops::Range<usize>,
+    is_any_cut_off: bool,
 }
 
 /// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error.
@@ -76,26 +77,39 @@ pub(crate) fn record(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return Ok(());
     }
-    // Of a part of a mesh, no more than it names.
-    let (first, last) = mesh
-        .triangles()
-        .flatten()
-        .fold((u16::MAX, 0), |(first, last), index| (first.min(index), last.max(index)));
-    if first > last {
+    let (start, most) = (vertices.len(), vertices.capacity().min(MOST_SLOTS));
+    let Some([first, last]) = named(mesh, most - start) else {
         return Ok(());
-    }
-    let (start, count) = (vertices.len(), usize::from(last - first) + 1);
-    if start + count > vertices.capacity().min(MOST_SLOTS) {
+    };
+    let count = usize::from(last - first) + 1;
+    if start + count > most {
         return Err(Full::Vertices);
     }
     let base = (start as u16).wrapping_sub(first);
     let own = start..start + count;
     let first_triangle = triangles.len();
-    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, base, own };
+    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, base, own, is_any_cut_off: false };
     recorder.place(first, stats);
     recorder.add_triangles(stats)?;
     recorder.move_together(first, first_triangle);
     Ok(())
+}
+
+/// The first and the last vertex that are given slots, of which there are `most`: of a part of a mesh no more than it names.
+///
+/// Where there are as many triangles as vertices it is none, most likely, and all vertices have slots if these are enough: to look
+/// at all triangles takes as long as to transform a tenth of the vertices.
+#[inline(never)]
+fn named(mesh: &Mesh<'_>, most: usize) -> Option<[u16; 2]> {
+    let count = mesh.vertices().len();
+    if count <= mesh.triangles().len() && count <= most {
+        return count.checked_sub(1).map(|last| [0, last as u16]);
+    }
+    let (first, last) = mesh
+        .triangles()
+        .flatten()
+        .fold((u16::MAX, 0), |(first, last), index| (first.min(index), last.max(index)));
+    (first <= last).then_some([first, last])
 }
 
 impl Recorder<'_, '_> {
@@ -109,6 +123,7 @@ impl Recorder<'_, '_> {
             stats.count(|stats| &mut stats.transformed);
             if !self.clip.locate(&self.to_clip, vertex, (&mut slot.x, &mut slot.y, &mut slot.q)) {
                 slot.x = CUT_OFF;
+                self.is_any_cut_off = true;
             }
         }
     }
@@ -124,14 +139,18 @@ impl Recorder<'_, '_> {
     #[inline(never)]
     fn add_triangles(&mut self, stats: &mut impl Count) -> Result<(), Full> {
         let is_faceted = self.style.coloring.is_faceted();
+        let cut_off = i32::from(CUT_OFF.to_bits());
         let mesh = self.mesh;
         for indices in mesh.triangles() {
             stats.count(|stats| &mut stats.triangles);
             let corners = indices.map(|index| self.slot(index));
             let [a, b, c] = corners.map(|slot| self.at(slot));
-            let cut_off = i32::from(CUT_OFF.to_bits());
-            if a[0] == cut_off || b[0] == cut_off || c[0] == cut_off {
+            if self.is_any_cut_off && (a[0] == cut_off || b[0] == cut_off || c[0] == cut_off) {
                 self.add_cut(indices, stats)?;
+                continue;
+            }
+            if self.style.cull.leaves_out_triangle([a, b, c]) {
+                stats.count(|stats| &mut stats.culled);
                 continue;
             }
             let Some(rows) = self.rows_if_seen([a, b, c], stats) else {
@@ -149,13 +168,9 @@ impl Recorder<'_, '_> {
         Ok(())
     }
 
-    /// The rows of a triangle if it is neither culled nor out of the viewport, in steps of the index.
+    /// The rows of a triangle if it is not out of the viewport, in steps of the index.
     #[inline]
     fn rows_if_seen(&self, [a, b, c]: [[i32; 2]; 3], stats: &mut impl Count) -> Option<[u8; 2]> {
-        if self.style.cull.leaves_out_triangle([a, b, c]) {
-            stats.count(|stats| &mut stats.culled);
-            return None;
-        }
         let within = |axis: usize, range: &core::ops::Range<i32>| {
             let [start, end] = Window::centers(a[axis], b[axis], c[axis]);
             (start.max(range.start), end.min(range.end))
