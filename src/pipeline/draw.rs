@@ -2,7 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
-use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
+use super::setup::{area, Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
@@ -150,7 +150,8 @@ impl Placer<'_> {
                     self.complete(indices[i], vertex);
                 }
             }
-            return Some(Found::Facing(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners))));
+            let vertices = slots.map(|slot| &cache.vertices[slot]);
+            return Some(Found::Facing(Oriented::of_area(vertices, area(corners))));
         }
     }
 
@@ -255,26 +256,6 @@ impl Placer<'_> {
     }
 }
 
-/// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
-#[inline(always)]
-fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
-    (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-}
-
-/// A triangle of this [`area`], which is not 0, as set-up takes it.
-#[inline(always)]
-fn oriented([a, b, c]: [&ScreenVertex; 3], area: i32) -> Oriented<'_> {
-    let [b, c] = if area < 0 { [c, b] } else { [b, c] };
-    let vertices = if b.q > a.q && b.q >= c.q {
-        [b, c, a]
-    } else if c.q > a.q {
-        [c, a, b]
-    } else {
-        [a, b, c]
-    };
-    Oriented { vertices, area: area.unsigned_abs() }
-}
-
 /// A point of the world on the screen.
 pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
     let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
@@ -362,6 +343,12 @@ where
             Some(triangle) => self.draw_oriented(&triangle, stats),
             None => stats.count(|stats| &mut stats.culled),
         }
+    }
+
+    /// A triangle that is clockwise on the screen, its nearest vertex first.
+    #[inline]
+    pub(crate) fn draw_in_order(&mut self, vertices: [&ScreenVertex; 3]) {
+        self.draw_oriented(&Oriented::in_order(vertices), &mut ());
     }
 
     #[inline(never)]

@@ -33,7 +33,7 @@ pub(crate) const MOST_SLOTS: usize = u16::MAX as usize;
 /// A triangle in a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ListTriangle {
-    /// Slots.
+    /// Slots, of the corners clockwise on the screen, the nearest first.
     pub(super) corners: [u16; 3],
     /// The first and the last row that it touches, in [`ROWS_LOG2`].
     pub(crate) rows: [u8; 2],

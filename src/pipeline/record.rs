@@ -3,7 +3,7 @@
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::listed::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
-use super::setup::Cull;
+use super::setup::{Cull, area, in_order};
 use super::shade::{Inputs, Shader};
 use super::span::Window;
 use super::stats::Count;
@@ -149,7 +149,8 @@ impl Recorder<'_, '_> {
                 self.add_cut(indices, stats)?;
                 continue;
             }
-            if self.style.cull.leaves_out_triangle([a, b, c]) {
+            let area = area([a, b, c]);
+            if self.style.cull.leaves_out(area) {
                 stats.count(|stats| &mut stats.culled);
                 continue;
             }
@@ -157,12 +158,12 @@ impl Recorder<'_, '_> {
                 continue;
             };
             if is_faceted {
-                self.add_faceted(indices, rows)?;
+                self.add_faceted(indices, area, rows)?;
             } else {
                 for index in indices {
                     self.keep(index);
                 }
-                self.add(corners, rows)?;
+                self.add(corners, area, rows)?;
             }
         }
         Ok(())
@@ -185,7 +186,11 @@ impl Recorder<'_, '_> {
         Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
     }
 
-    fn add(&mut self, corners: [u16; 3], rows: [u8; 2]) -> Result<(), Full> {
+    /// In the order in which set-up takes its corners, which is found once for all bands.
+    #[inline(always)]
+    fn add(&mut self, corners: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+        let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |at| at.q.to_bits() << 1);
+        let corners = in_order(corners, area, q);
         self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
@@ -210,7 +215,7 @@ impl Recorder<'_, '_> {
 
     /// With the light of its face: corners of its own.
     #[inline(never)]
-    fn add_faceted(&mut self, indices: [u16; 3], rows: [u8; 2]) -> Result<(), Full> {
+    fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
         let mut corners = [0; 3];
         for (corner, index) in corners.iter_mut().zip(indices) {
             let slot = self.slot(index);
@@ -224,7 +229,7 @@ impl Recorder<'_, '_> {
             self.light_face(&mut vertex, indices);
             *corner = self.push(&vertex)?;
         }
-        self.add(corners, rows)
+        self.add(corners, area, rows)
     }
 
     fn light_face(&self, vertex: &mut ScreenVertex, indices: [u16; 3]) {
@@ -249,6 +254,11 @@ impl Recorder<'_, '_> {
         for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
             let fan = [0, piece, piece + 1];
             let position = |i: usize| [polygon[i].x, polygon[i].y].map(|at| i32::from(at.to_bits()));
+            let area = area(fan.map(position));
+            if self.style.cull.leaves_out(area) {
+                stats.count(|stats| &mut stats.culled);
+                continue;
+            }
             let Some(rows) = self.rows_if_seen(fan.map(position), stats) else {
                 continue;
             };
@@ -263,7 +273,7 @@ impl Recorder<'_, '_> {
                 };
                 slots[i] = Some(*corner);
             }
-            self.add(corners, rows)?;
+            self.add(corners, area, rows)?;
         }
         Ok(())
     }

@@ -57,7 +57,7 @@ pub enum Cull {
 impl Cull {
     /// By twice the area, positive clockwise on the screen.
     #[inline]
-    fn leaves_out(self, area: i32) -> bool {
+    pub(super) fn leaves_out(self, area: i32) -> bool {
         match self {
             _ if area == 0 => true,
             Self::Back => area > 0,
@@ -68,8 +68,8 @@ impl Cull {
 
     /// Whether a triangle between positions in 1/16 px, within the guard band, is left out.
     #[inline]
-    pub(super) fn leaves_out_triangle(self, [a, b, c]: [[i32; 2]; 3]) -> bool {
-        self.leaves_out((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    pub(super) fn leaves_out_triangle(self, positions: [[i32; 2]; 3]) -> bool {
+        self.leaves_out(area(positions))
     }
 }
 
@@ -179,21 +179,40 @@ pub(super) struct Oriented<'a> {
 impl<'a> Oriented<'a> {
     /// `None` for a triangle without area or culled.
     #[inline]
-    pub(super) fn new([a, b, c]: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
-        let ([ax, ay], [bx, by], [cx, cy]) = (position(a), position(b), position(c));
-        let area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax); // positive: clockwise on the screen
-        if cull.leaves_out(area) {
-            return None;
-        }
-        let [a, b, c] = if area < 0 { [a, c, b] } else { [a, b, c] };
-        let vertices = if b.q > a.q && b.q >= c.q {
-            [b, c, a]
-        } else if c.q > a.q {
-            [c, a, b]
-        } else {
-            [a, b, c]
-        };
-        Some(Self { vertices, area: area.unsigned_abs() })
+    pub(super) fn new(vertices: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
+        let area = area(vertices.map(position));
+        (!cull.leaves_out(area)).then(|| Self::of_area(vertices, area))
+    }
+
+    /// Of a triangle's [`area`], which is not 0.
+    #[inline(always)]
+    pub(super) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
+        Self { vertices: in_order(vertices, area, |vertex| vertex.q.to_bits()), area: area.unsigned_abs() }
+    }
+
+    /// Of vertices that are in order already.
+    #[inline]
+    pub(super) fn in_order(vertices: [&'a ScreenVertex; 3]) -> Self {
+        Self { vertices, area: area(vertices.map(position)) as u32 }
+    }
+}
+
+/// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
+#[inline(always)]
+pub(super) fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
+    (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+}
+
+/// The corners of a triangle of this [`area`], which is not 0, as set-up takes them: clockwise, the nearest first.
+#[inline(always)]
+pub(super) fn in_order<T: Copy>([a, b, c]: [T; 3], area: i32, q: impl Fn(T) -> u32) -> [T; 3] {
+    let [b, c] = if area < 0 { [c, b] } else { [b, c] };
+    if q(b) > q(a) && q(b) >= q(c) {
+        [b, c, a]
+    } else if q(c) > q(a) {
+        [c, a, b]
+    } else {
+        [a, b, c]
     }
 }
 

@@ -6,7 +6,7 @@ use super::index::{BLOCK, Index, rows_of, sort, steps_of, touch};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
-    Count, Cull, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader,
+    Count, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader,
     Style, Window, record,
 };
 use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
@@ -237,7 +237,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
             raster.change(draw.shader, draw.is_orthographic, within(draw));
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
-        raster.draw(corners.each_ref(), Cull::None, &mut ());
+        raster.draw_in_order(corners.each_ref());
     };
     match index {
         Index::Order(order) => {
