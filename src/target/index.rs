@@ -32,6 +32,60 @@ pub(super) fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
     ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
 }
 
+/// The triangles that touch some rows.
+pub(super) struct Touching<'l> {
+    triangles: &'l [ListTriangle],
+    index: Index<'l>,
+    rows: [u8; 2],
+    /// The next place in the order or among the triangles, and the end of its block.
+    at: usize,
+    end: usize,
+}
+
+impl<'l> Touching<'l> {
+    pub(super) fn new(triangles: &'l [ListTriangle], index: Index<'l>, rows: [u8; 2]) -> Self {
+        Self { triangles, index, rows, at: 0, end: 0 }
+    }
+
+    /// The next, with its number.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Option<(u16, &'l ListTriangle)> {
+        let Index::Rows(blocks) = self.index else {
+            return self.next_in_order();
+        };
+        loop {
+            while self.at == self.end {
+                let block = blocks.get(self.at / BLOCK)?;
+                self.end += BLOCK;
+                if !touch(block.to_le_bytes(), self.rows) {
+                    self.at = self.end;
+                }
+            }
+            // Of the last block there may be less.
+            let triangle = self.triangles.get(self.at)?;
+            self.at += 1;
+            if touch(triangle.rows, self.rows) {
+                return Some((self.at as u16 - 1, triangle));
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn next_in_order(&mut self) -> Option<(u16, &'l ListTriangle)> {
+        let Index::Order(order) = self.index else {
+            return None;
+        };
+        loop {
+            let id = *order.get(self.at)?;
+            self.at += 1;
+            match self.triangles.get(usize::from(id)) {
+                Some(triangle) if touch(triangle.rows, self.rows) => return Some((id, triangle)),
+                _ => {}
+            }
+        }
+    }
+}
+
 /// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.
 pub(super) fn sort(ids: &mut [u16], key: impl Fn(u16) -> (u32, u16)) {
     let sift = |ids: &mut [u16], mut root: usize| {

@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, sealed::Sealed};
 use super::changes::Extent;
-use super::index::{BLOCK, Index, rows_of, sort, steps_of, touch};
+use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
@@ -226,7 +226,8 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     let mut ids = 0..draw.end;
     let mut raster = Raster::new(draw.shader, draw.is_orthographic, within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
-    let mut visit = |id: u16, triangle: &ListTriangle| {
+    let mut seen = Touching::new(view.triangles, index, rows);
+    while let Some((id, triangle)) = seen.next() {
         if !ids.contains(&id) {
             let number = draws.partition_point(|draw| draw.end <= id);
             let start = number.checked_sub(1).and_then(|before| draws.get(before)).map_or(0, |draw| draw.end);
@@ -238,29 +239,6 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw_in_order(corners.each_ref());
-    };
-    match index {
-        Index::Order(order) => {
-            for &id in order {
-                match view.triangles.get(usize::from(id)) {
-                    Some(triangle) if touch(triangle.rows, rows) => visit(id, triangle),
-                    _ => {}
-                }
-            }
-        }
-        Index::Rows(blocks) => {
-            let blocks = view.triangles.chunks(BLOCK).zip(blocks).zip((0..).step_by(BLOCK));
-            for ((block, of_block), first) in blocks {
-                if !touch(of_block.to_le_bytes(), rows) {
-                    continue;
-                }
-                for (triangle, id) in block.iter().zip(first..) {
-                    if touch(triangle.rows, rows) {
-                        visit(id, triangle);
-                    }
-                }
-            }
-        }
     }
 }
 
