@@ -53,7 +53,7 @@ struct Recorder<'l, 'm> {
     style: &'l Style,
     window: Window,
     /// The slot of the mesh's vertex 0, or what would be it, wrapping.
-    base: u16,
+    to_slot: usize,
     /// The mesh's slots.
     own: core::ops::Range<usize>,
     is_any_cut_off: bool,
@@ -85,10 +85,10 @@ pub(crate) fn record(
     if start + count > most {
         return Err(Full::Vertices);
     }
-    let base = (start as u16).wrapping_sub(first);
+    let to_slot = start.wrapping_sub(first.into());
     let own = start..start + count;
     let first_triangle = triangles.len();
-    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, base, own, is_any_cut_off: false };
+    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, to_slot, own, is_any_cut_off: false };
     recorder.place(first, stats);
     recorder.add_triangles(stats)?;
     recorder.move_together(first, first_triangle);
@@ -128,12 +128,15 @@ impl Recorder<'_, '_> {
         }
     }
 
+    #[inline]
     fn slot(&self, index: u16) -> u16 {
-        self.base.wrapping_add(index)
+        index.wrapping_add(self.to_slot as u16)
     }
 
-    fn at(&self, slot: u16) -> [i32; 2] {
-        self.vertices.get(usize::from(slot)).map_or([0; 2], ListVertex::position)
+    #[inline]
+    fn at(&self, index: u16) -> [i32; 2] {
+        let slot = usize::from(index).wrapping_add(self.to_slot);
+        self.vertices.get(slot).map_or([0; 2], ListVertex::position)
     }
 
     #[inline(never)]
@@ -143,8 +146,7 @@ impl Recorder<'_, '_> {
         let mesh = self.mesh;
         for indices in mesh.triangles() {
             stats.count(|stats| &mut stats.triangles);
-            let corners = indices.map(|index| self.slot(index));
-            let [a, b, c] = corners.map(|slot| self.at(slot));
+            let [a, b, c] = indices.map(|index| self.at(index));
             if self.is_any_cut_off && (a[0] == cut_off || b[0] == cut_off || c[0] == cut_off) {
                 self.add_cut(indices, stats)?;
                 continue;
@@ -160,10 +162,8 @@ impl Recorder<'_, '_> {
             if is_faceted {
                 self.add_faceted(indices, area, rows)?;
             } else {
-                for index in indices {
-                    self.keep(index);
-                }
-                self.add(corners, area, rows)?;
+                let q = indices.map(|index| self.keep(index));
+                self.add(indices.map(|index| self.slot(index)), area, q, rows)?;
             }
         }
         Ok(())
@@ -188,36 +188,39 @@ impl Recorder<'_, '_> {
 
     /// In the order in which set-up takes its corners, which is found once for all bands.
     #[inline(always)]
-    fn add(&mut self, corners: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
-        let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |at| at.q.to_bits() << 1);
-        let corners = in_order(corners, area, q);
+    fn add(&mut self, corners: [u16; 3], area: i32, q: [U1F31; 3], rows: [u8; 2]) -> Result<(), Full> {
+        let [a, b, c] = [0, 1, 2].map(|i| (corners[i], q[i].to_bits()));
+        let corners = in_order([a, b, c], area, |(_, q)| q).map(|(slot, _)| slot);
         self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
-    /// A vertex is lit when it turns out that it is seen.
+    /// A vertex is lit when it turns out that it is seen. Its q, with [`KEPT`].
     #[inline]
-    fn keep(&mut self, index: u16) {
-        let slot = usize::from(self.slot(index));
+    fn keep(&mut self, index: u16) -> U1F31 {
+        let slot = usize::from(index).wrapping_add(self.to_slot);
         let Some(vertex) = self.vertices.get_mut(slot) else {
-            return;
+            return KEPT;
         };
         if vertex.q & KEPT != U1F31::ZERO {
-            return;
+            return vertex.q;
         }
         vertex.q |= KEPT;
+        let q = vertex.q;
         if self.style.has_color() {
             let mut color = [U8F8::ZERO; 3];
             self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
             let [red, green, blue] = color.map(U8F8::to_bits);
             vertex.attributes = [red, green, blue, 0];
         }
+        q
     }
 
     /// With the light of its face: corners of its own.
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
-        let mut corners = [0; 3];
-        for (corner, index) in corners.iter_mut().zip(indices) {
+        let (mut corners, mut q) = ([0; 3], [U1F31::ZERO; 3]);
+        for i in 0..3 {
+            let index = indices[i];
             let slot = self.slot(index);
             let of_mesh = self.mesh.vertex(index);
             let mut vertex = ScreenVertex::default();
@@ -227,9 +230,9 @@ impl Recorder<'_, '_> {
             [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
             self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
             self.light_face(&mut vertex, indices);
-            *corner = self.push(&vertex)?;
+            (corners[i], q[i]) = (self.push(&vertex)?, vertex.q);
         }
-        self.add(corners, area, rows)
+        self.add(corners, area, q, rows)
     }
 
     fn light_face(&self, vertex: &mut ScreenVertex, indices: [u16; 3]) {
@@ -273,7 +276,7 @@ impl Recorder<'_, '_> {
                 };
                 slots[i] = Some(*corner);
             }
-            self.add(corners, area, rows)?;
+            self.add(corners, area, fan.map(|i| polygon[i].q), rows)?;
         }
         Ok(())
     }
