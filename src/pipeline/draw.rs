@@ -302,6 +302,7 @@ pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
         every_pixel: S::Quality::EVERY_PIXEL,
         texture_scale: shader.texture_scale().min(8),
         depth: !D::ALWAYS_PASSES,
+        gray: false,
     }
 }
 
@@ -332,9 +333,9 @@ where
     }
 
     /// The same for another shader and window.
-    pub(crate) fn change(&mut self, shader: &'a S, is_orthographic: bool, window: Window) {
+    pub(crate) fn change(&mut self, shader: &'a S, [is_orthographic, is_gray]: [bool; 2], window: Window) {
         (self.shader, self.window) = (shader, window);
-        self.needs = needs::<F, D, S>(shader, is_orthographic);
+        self.needs = Needs { gray: is_gray, ..needs::<F, D, S>(shader, is_orthographic) };
     }
 
     #[inline]

@@ -59,7 +59,8 @@ struct Recorder<'l, 'm> {
     is_any_cut_off: bool,
 }
 
-/// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error.
+/// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error. Returns whether all its colours are
+/// grey.
 pub(crate) fn record(
     vertices: &mut VecView<ListVertex>,
     triangles: &mut VecView<ListTriangle>,
@@ -68,18 +69,18 @@ pub(crate) fn record(
     projection: &Projection,
     style: &Style,
     stats: &mut impl Count,
-) -> Result<(), Full> {
+) -> Result<bool, Full> {
     stats.count(|stats| &mut stats.meshes);
     let window = Window::LARGEST.within(&projection.viewport);
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
     if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
-        return Ok(());
+        return Ok(true);
     }
     let (start, most) = (vertices.len(), vertices.capacity().min(MOST_SLOTS));
     let Some([first, last]) = named(mesh, most - start) else {
-        return Ok(());
+        return Ok(true);
     };
     let count = usize::from(last - first) + 1;
     if start + count > most {
@@ -91,8 +92,7 @@ pub(crate) fn record(
     let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, to_slot, own, is_any_cut_off: false };
     recorder.place(first, stats);
     recorder.add_triangles(stats)?;
-    recorder.move_together(first, first_triangle);
-    Ok(())
+    Ok(recorder.move_together(first, first_triangle))
 }
 
 /// The first and the last vertex that are given slots, of which there are `most`: of a part of a mesh no more than it names.
@@ -307,9 +307,9 @@ impl Recorder<'_, '_> {
         self.vertices.push(slot).map_err(|_| Full::Vertices)
     }
 
-    /// Gives back the slots of vertices that are not seen, and completes the others.
+    /// Gives back the slots of vertices that are not seen, and completes the others. Returns whether all colours are grey.
     #[inline(never)]
-    fn move_together(self, first: u16, first_triangle: usize) {
+    fn move_together(self, first: u16, first_triangle: usize) -> bool {
         let Self { vertices, triangles, mesh, style, own, .. } = self;
         // Where each goes: into the place of the mesh's vertex, which is known as long as it stays.
         let mut next = own.start as u16;
@@ -328,10 +328,10 @@ impl Recorder<'_, '_> {
                 };
             }
         }
-        let mut to = own.start;
+        let (mut to, mut is_gray) = (own.start, true);
         for from in own.start..vertices.len() {
             let Some(&(mut vertex)) = vertices.get(from) else {
-                return;
+                break;
             };
             if from < own.end {
                 if vertex.q & KEPT == U1F31::ZERO {
@@ -345,11 +345,14 @@ impl Recorder<'_, '_> {
                     vertex.attributes[3] = index;
                 }
             }
+            let [red, green, blue, _] = vertex.attributes;
+            is_gray &= red == green && green == blue || vertex.x == CUT_OFF;
             if let Some(place) = vertices.get_mut(to) {
                 *place = vertex;
             }
             to += 1;
         }
         vertices.truncate(to);
+        style.has_color() && is_gray
     }
 }

@@ -136,6 +136,8 @@ pub(super) struct Needs {
     pub(super) texture_scale: u32,
     /// Whether depth is tested.
     pub(super) depth: bool,
+    /// Whether all colours are known to be grey.
+    pub(super) gray: bool,
 }
 
 impl Needs {
@@ -248,7 +250,7 @@ impl TriangleSetup {
                 let [red, green, blue] = vertex.color;
                 red == green && green == blue
             };
-            self.gray = triangle.vertices.into_iter().all(is_gray);
+            self.gray = needs.gray || triangle.vertices.into_iter().all(is_gray);
         }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);

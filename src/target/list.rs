@@ -83,6 +83,8 @@ struct Draw<'a, S> {
     end: u16,
     inputs: Inputs,
     is_orthographic: bool,
+    /// Whether all colours are grey.
+    is_gray: bool,
 }
 
 impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> DisplayList<'a, V, T, D, S, F> {
@@ -204,6 +206,7 @@ impl<S> Draw<'_, S> {
             && self.viewport == other.viewport
             && self.inputs == other.inputs
             && self.is_orthographic == other.is_orthographic
+            && self.is_gray == other.is_gray
     }
 }
 
@@ -223,7 +226,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     }
     let rows = steps_of(&window);
     let within = |draw: &Draw<'_, S>| window.clone().within(&draw.viewport);
-    let mut ids = 0..draw.end;
+    let mut ids = 0..0;
     let mut raster = Raster::new(draw.shader, draw.is_orthographic, within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
     let mut seen = Touching::new(view.triangles, index, rows);
@@ -235,7 +238,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
                 return;
             };
             (draw, ids) = (other, start..other.end);
-            raster.change(draw.shader, draw.is_orthographic, within(draw));
+            raster.change(draw.shader, [draw.is_orthographic, draw.is_gray], within(draw));
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw_in_order(corners.each_ref());
@@ -276,10 +279,11 @@ where
             end: self.triangles.len() as u16,
             inputs: style.inputs,
             is_orthographic: camera.is_orthographic(),
+            is_gray: *recorded.as_ref().unwrap_or(&false),
         };
         let result = match recorded {
-            Ok(()) if self.triangles.len() == triangles => Ok(()),
-            Ok(()) => match self.draws.last_mut() {
+            Ok(_) if self.triangles.len() == triangles => Ok(()),
+            Ok(_) => match self.draws.last_mut() {
                 Some(last) if last.is_like(&draw) => {
                     last.end = draw.end;
                     Ok(())
