@@ -57,6 +57,8 @@ struct Recorder<'l, 'm> {
     /// The mesh's slots.
     own: core::ops::Range<usize>,
     is_any_cut_off: bool,
+    /// The slot that the next vertex will have that is kept.
+    next: u16,
 }
 
 /// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error. Returns whether all its colours are
@@ -89,7 +91,7 @@ pub(crate) fn record(
     let to_slot = start.wrapping_sub(first.into());
     let own = start..start + count;
     let first_triangle = triangles.len();
-    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, to_slot, own, is_any_cut_off: false };
+    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, to_slot, own, is_any_cut_off: false, next: start as u16 };
     recorder.place(first, stats);
     recorder.add_triangles(stats)?;
     Ok(recorder.move_together(first, first_triangle))
@@ -129,11 +131,6 @@ impl Recorder<'_, '_> {
     }
 
     #[inline]
-    fn slot(&self, index: u16) -> u16 {
-        index.wrapping_add(self.to_slot as u16)
-    }
-
-    #[inline]
     fn at(&self, index: u16) -> [i32; 2] {
         let slot = usize::from(index).wrapping_add(self.to_slot);
         self.vertices.get(slot).map_or([0; 2], ListVertex::position)
@@ -162,8 +159,8 @@ impl Recorder<'_, '_> {
             if is_faceted {
                 self.add_faceted(indices, area, rows)?;
             } else {
-                let q = indices.map(|index| self.keep(index));
-                self.add(indices.map(|index| self.slot(index)), area, q, rows)?;
+                let corners = indices.map(|index| self.keep(index));
+                self.add(corners, area, rows)?;
             }
         }
         Ok(())
@@ -186,53 +183,54 @@ impl Recorder<'_, '_> {
         Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
     }
 
-    /// In the order in which set-up takes its corners, which is found once for all bands.
+    /// From slots and q, in the order in which set-up takes its corners, which is found once for all bands.
     #[inline(always)]
-    fn add(&mut self, corners: [u16; 3], area: i32, q: [U1F31; 3], rows: [u8; 2]) -> Result<(), Full> {
-        let [a, b, c] = [0, 1, 2].map(|i| (corners[i], q[i].to_bits()));
-        let corners = in_order([a, b, c], area, |(_, q)| q).map(|(slot, _)| slot);
+    fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+        let corners = in_order(corners, area, |(_, q)| q.to_bits() & !KEPT.to_bits()).map(|(slot, _)| slot);
         self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
-    /// A vertex is lit when it turns out that it is seen. Its q, with [`KEPT`].
+    /// The slot that a vertex will have, and q. It is lit when it turns out that it is seen.
     #[inline]
-    fn keep(&mut self, index: u16) -> U1F31 {
+    fn keep(&mut self, index: u16) -> (u16, U1F31) {
         let slot = usize::from(index).wrapping_add(self.to_slot);
         let Some(vertex) = self.vertices.get_mut(slot) else {
-            return KEPT;
+            return (0, U1F31::ZERO);
         };
-        if vertex.q & KEPT != U1F31::ZERO {
-            return vertex.q;
-        }
-        vertex.q |= KEPT;
         let q = vertex.q;
+        if q & KEPT != U1F31::ZERO {
+            return (vertex.attributes[3], q);
+        }
+        let next = self.next;
+        (vertex.q, self.next) = (q | KEPT, next + 1);
         if self.style.has_color() {
             let mut color = [U8F8::ZERO; 3];
             self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
             let [red, green, blue] = color.map(U8F8::to_bits);
-            vertex.attributes = [red, green, blue, 0];
+            vertex.attributes = [red, green, blue, next];
+        } else {
+            vertex.attributes[3] = next;
         }
-        q
+        (next, q)
     }
 
     /// With the light of its face: corners of its own.
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
-        let (mut corners, mut q) = ([0; 3], [U1F31::ZERO; 3]);
-        for i in 0..3 {
-            let index = indices[i];
-            let slot = self.slot(index);
+        let mut corners = [(0, U1F31::ZERO); 3];
+        for (corner, index) in corners.iter_mut().zip(indices) {
+            let slot = usize::from(index).wrapping_add(self.to_slot);
             let of_mesh = self.mesh.vertex(index);
             let mut vertex = ScreenVertex::default();
-            if let Some(at) = self.vertices.get(usize::from(slot)) {
+            if let Some(at) = self.vertices.get(slot) {
                 (vertex.x, vertex.y, vertex.q) = (at.x, at.y, at.q);
             }
             [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
             self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
             self.light_face(&mut vertex, indices);
-            (corners[i], q[i]) = (self.push(&vertex)?, vertex.q);
+            *corner = (self.push(&vertex)?, vertex.q);
         }
-        self.add(corners, area, q, rows)
+        self.add(corners, area, rows)
     }
 
     fn light_face(&self, vertex: &mut ScreenVertex, indices: [u16; 3]) {
@@ -276,12 +274,13 @@ impl Recorder<'_, '_> {
                 };
                 slots[i] = Some(*corner);
             }
-            self.add(corners, area, fan.map(|i| polygon[i].q), rows)?;
+            let [a, b, c] = [0, 1, 2].map(|i| (corners[i], polygon[fan[i]].q));
+            self.add([a, b, c], area, rows)?;
         }
         Ok(())
     }
 
-    /// A corner that no vertex of the mesh stands for.
+    /// A corner that no vertex of the mesh stands for: its slot, until [`Recorder::move_together`].
     fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
         let slot = self.vertices.len();
         let uv = ListVertex::attributes_of([at.u, at.v]);
@@ -310,49 +309,62 @@ impl Recorder<'_, '_> {
     /// Gives back the slots of vertices that are not seen, and completes the others. Returns whether all colours are grey.
     #[inline(never)]
     fn move_together(self, first: u16, first_triangle: usize) -> bool {
-        let Self { vertices, triangles, mesh, style, own, .. } = self;
-        // Where each goes: into the place of the mesh's vertex, which is known as long as it stays.
-        let mut next = own.start as u16;
-        for vertex in vertices.get_mut(own.clone()).unwrap_or_default() {
-            if vertex.q & KEPT != U1F31::ZERO {
-                vertex.attributes[3] = next;
-                next += 1;
-            }
-        }
-        let freed = own.end as u16 - next;
-        for triangle in triangles.get_mut(first_triangle..).unwrap_or_default() {
-            for corner in &mut triangle.corners {
-                *corner = match vertices.get(usize::from(*corner)) {
-                    Some(vertex) if usize::from(*corner) < own.end => vertex.attributes[3],
-                    _ => *corner - freed,
-                };
-            }
-        }
-        let (mut to, mut is_gray) = (own.start, true);
-        for from in own.start..vertices.len() {
-            let Some(&(mut vertex)) = vertices.get(from) else {
+        let Self { vertices, triangles, mesh, style, own, next, .. } = self;
+        let mut is_gray = style.has_color();
+        for hole in own.clone() {
+            let Some(place) = vertices.get_mut(hole) else {
                 break;
             };
-            if from < own.end {
-                if vertex.q & KEPT == U1F31::ZERO {
-                    continue;
-                }
-                vertex.q &= !KEPT;
+            let mut vertex = *place;
+            place.q &= !KEPT;
+            // Each goes where it belongs, and takes the place of one that goes on.
+            let mut from = hole;
+            while vertex.q & KEPT != U1F31::ZERO {
+                let to = usize::from(vertex.attributes[3]);
+                let [red, green, blue, _] = vertex.attributes;
+                is_gray &= red == green && green == blue;
                 let index = first + (from - own.start) as u16;
                 if style.inputs == Inputs::Uv {
                     vertex.attributes = ListVertex::attributes_of(mesh.vertex(index).uv.map(I16F16::from));
                 } else {
                     vertex.attributes[3] = index;
                 }
+                vertex.q &= !KEPT;
+                let Some(place) = vertices.get_mut(to) else {
+                    break;
+                };
+                vertex = core::mem::replace(place, vertex);
+                from = to;
             }
+        }
+        let freed = own.end - usize::from(next);
+        if vertices.len() > own.end {
+            is_gray &= Self::move_down(vertices, own.end, freed);
+            for corner in triangles.get_mut(first_triangle..).unwrap_or_default().iter_mut().flat_map(|t| &mut t.corners) {
+                if usize::from(*corner) >= own.end {
+                    *corner -= freed as u16;
+                }
+            }
+        }
+        vertices.truncate(vertices.len() - freed);
+        is_gray
+    }
+
+    /// Moves the slots from `start` on that far down. Returns whether all colours are grey.
+    #[cold]
+    #[inline(never)]
+    fn move_down(vertices: &mut VecView<ListVertex>, start: usize, by: usize) -> bool {
+        let mut is_gray = true;
+        for from in start..vertices.len() {
+            let Some(&vertex) = vertices.get(from) else {
+                break;
+            };
             let [red, green, blue, _] = vertex.attributes;
             is_gray &= red == green && green == blue || vertex.x == CUT_OFF;
-            if let Some(place) = vertices.get_mut(to) {
+            if let Some(place) = vertices.get_mut(from - by) {
                 *place = vertex;
             }
-            to += 1;
         }
-        vertices.truncate(to);
-        style.has_color() && is_gray
+        is_gray
     }
 }
