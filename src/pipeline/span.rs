@@ -213,10 +213,12 @@ impl Rows {
         }
     }
 
-    /// Whether it has none.
+    /// Whether it has none, or just one that is empty: many a small triangle has no more in a band.
     #[inline]
     pub(super) fn are_none(&self) -> bool {
-        self.row >= self.end
+        let next = self.row + 1;
+        next > self.end
+            || next == self.end && next <= self.knee && self.left.x >> FRACTION >= self.right.x >> FRACTION
     }
 
     /// Whether they are at most 32 pixels wide and less high, and all columns within the window.
