@@ -85,7 +85,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
 
     /// Forgets all depths, so that whatever is drawn next is seen.
     pub fn clear_depth(&mut self) {
-        self.depth.fill(D::CLEAR);
+        D::clear(self.depth);
     }
 
     /// The pixels' words, row after row.
