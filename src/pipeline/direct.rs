@@ -91,7 +91,7 @@ where
         if rows.are_none() || left >= shown.columns.end || right <= shown.columns.start {
             return Ok(());
         }
-        let needs: Needs = needs::<F, NoDepth, S>(shader, is_orthographic);
+        let needs: Needs = needs::<F, NoDepth, S>(shader, [is_orthographic, false]);
         let fits = RUN > STRAIGHT as usize;
         setup.set(&triangle, &needs, fits && rows.are_simple());
         if fits && Patch::<F::Word, NoDepth>::takes(setup, rows) {

@@ -52,7 +52,7 @@ pub(crate) fn draw<F, D, S>(
         newest: 0,
         vertices: [ScreenVertex::default(); CACHED],
     };
-    let mut raster = Raster::new(shader, projection.orthographic, window, band);
+    let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
     let is_faceted = coloring.is_faceted();
     let mut next = 0;
     while let Some(found) = placer.next(&mut next, &mut cache, stats) {
@@ -288,13 +288,13 @@ where
         return Err(RangeError);
     }
     let window = band.window();
-    Raster::new(shader, false, window, band).draw(vertices.each_ref(), cull, &mut ());
+    Raster::new(shader, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
     Ok(())
 }
 
 pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     shader: &S,
-    is_orthographic: bool,
+    [is_orthographic, is_gray]: [bool; 2],
 ) -> Needs {
     Needs {
         inputs: shader.inputs(),
@@ -302,7 +302,7 @@ pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
         every_pixel: S::Quality::EVERY_PIXEL,
         texture_scale: shader.texture_scale().min(8),
         depth: !D::ALWAYS_PASSES,
-        gray: false,
+        gray: is_gray,
     }
 }
 
@@ -322,20 +322,21 @@ where
     D: DepthFormat,
     S: Shader<F>,
 {
+    /// For a camera that may be orthographic, and colours that may all be grey.
     pub(crate) fn new(
         shader: &'a S,
-        is_orthographic: bool,
+        kind: [bool; 2],
         window: Window,
         band: &'a mut Band<'b, F, D>,
     ) -> Self {
-        let needs = needs::<F, D, S>(shader, is_orthographic);
-        Self { shader, band, window, needs, setup: TriangleSetup::new(), rows: Rows::default() }
+        let (setup, rows) = (TriangleSetup::new(), Rows::default());
+        Self { shader, band, window, needs: needs::<F, D, S>(shader, kind), setup, rows }
     }
 
     /// The same for another shader and window.
-    pub(crate) fn change(&mut self, shader: &'a S, [is_orthographic, is_gray]: [bool; 2], window: Window) {
+    pub(crate) fn change(&mut self, shader: &'a S, kind: [bool; 2], window: Window) {
         (self.shader, self.window) = (shader, window);
-        self.needs = Needs { gray: is_gray, ..needs::<F, D, S>(shader, is_orthographic) };
+        self.needs = needs::<F, D, S>(shader, kind);
     }
 
     #[inline]

@@ -226,8 +226,9 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     }
     let rows = steps_of(&window);
     let within = |draw: &Draw<'_, S>| window.clone().within(&draw.viewport);
-    let mut ids = 0..0;
-    let mut raster = Raster::new(draw.shader, draw.is_orthographic, within(draw), band);
+    let kind = |draw: &Draw<'_, S>| [draw.is_orthographic, draw.is_gray];
+    let mut ids = 0..draw.end;
+    let mut raster = Raster::new(draw.shader, kind(draw), within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
     let mut seen = Touching::new(view.triangles, index, rows);
     while let Some((id, triangle)) = seen.next() {
@@ -238,7 +239,7 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
                 return;
             };
             (draw, ids) = (other, start..other.end);
-            raster.change(draw.shader, [draw.is_orthographic, draw.is_gray], within(draw));
+            raster.change(draw.shader, kind(draw), within(draw));
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw_in_order(corners.each_ref());
