@@ -1,7 +1,7 @@
 //! The stages in a row.
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
-use super::color::Coloring;
+use super::color::{Coloring, dim};
 use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
@@ -9,7 +9,7 @@ use super::stats::Count;
 use super::straight::Straight;
 use super::transform::ToClip;
 use crate::math::{Pose, Vec3};
-use crate::num::I16F16;
+use crate::num::{I16F16, U8F8};
 use crate::scene::{Mesh, Projection, Vertex};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use core::fmt;
@@ -18,7 +18,8 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = MOST_CORNERS;
 const HINTS: usize = 64;
-const NOBODY: u32 = u32::MAX;
+/// No slot.
+const NOWHERE: u8 = CACHED as u8;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 
@@ -45,23 +46,31 @@ pub(crate) fn draw<F, D, S>(
         return;
     }
     let coloring = coloring::<F, S>(shader, pose);
-    let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring, cull: shader.cull() };
+    let placer = Placer {
+        mesh,
+        to_clip: &to_clip,
+        clip: &clip,
+        coloring: &coloring,
+        cull: shader.cull(),
+        is_faceted: coloring.is_faceted(),
+    };
     let mut cache = Cache {
-        hints: [0; HINTS],
-        owners: [NOBODY; CACHED],
+        hints: [NOWHERE; HINTS],
+        owners: [0; CACHED],
         newest: 0,
+        triangles: 0,
         vertices: [ScreenVertex::default(); CACHED],
     };
     let mut raster = Raster::new(shader, projection.orthographic, window, band);
-    let is_faceted = coloring.is_faceted();
-    let mut next = 0;
-    while let Some(found) = placer.next(&mut next, &mut cache, stats) {
-        match found {
-            Found::Facing(triangle) if !is_faceted => raster.draw_oriented(&triangle, stats),
-            Found::Facing(triangle) => placer.draw_faceted(next - 1, &triangle, &mut raster, stats),
+    while let Some(found) = placer.next(&mut cache, stats) {
+        match &found {
+            Found::Facing(triangle) => raster.draw_oriented(triangle, stats),
             Found::ToCut => {
-                let pieces = placer.cut(next - 1, &mut cache, stats);
-                placer.draw_pieces(next - 1, pieces, &cache, &mut raster, stats);
+                for piece in 0..placer.cut(&mut cache, stats) {
+                    if let Some(triangle) = placer.piece(piece, &cache, stats) {
+                        raster.draw_oriented(&triangle, stats);
+                    }
+                }
             }
         }
     }
@@ -76,10 +85,12 @@ fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
 /// The vertices that were placed last. In this order, in which Armv6-M needs the fewest registers to reach them.
 #[repr(C)]
 struct Cache {
+    owners: [u16; CACHED],
+    newest: u16,
+    /// How many of the mesh's triangles were looked at.
+    triangles: usize,
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
     hints: [u8; HINTS],
-    owners: [u32; CACHED],
-    newest: usize,
     vertices: [ScreenVertex; CACHED],
 }
 
@@ -88,24 +99,25 @@ impl Cache {
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
         let slot = usize::from(self.hints[usize::from(index) % HINTS]);
-        (self.owners.get(slot) == Some(&u32::from(index))).then_some(slot)
+        (self.owners.get(slot) == Some(&index)).then_some(slot)
     }
 
     /// A vertex's slot from now on: the oldest that is not among `used` (bits).
     #[inline(always)]
     fn give(&mut self, index: u16, used: u32) -> usize {
         let after = |slot| if slot < CACHED - 1 { slot + 1 } else { 0 };
-        let mut slot = after(self.newest);
+        let mut slot = after(usize::from(self.newest));
         while used >> slot & 1 != 0 {
             slot = after(slot);
         }
-        self.newest = slot;
-        self.owners[slot] = index.into();
+        self.newest = slot as u16;
+        self.owners[slot] = index;
         self.hints[usize::from(index) % HINTS] = slot as u8;
         slot
     }
 }
 
+/// A slot that is one.
 #[inline(always)]
 fn in_cache(slot: usize) -> Option<usize> {
     (slot < CACHED).then_some(slot)
@@ -125,16 +137,17 @@ struct Placer<'a> {
     clip: &'a Clip,
     coloring: &'a Coloring,
     cull: Cull,
+    is_faceted: bool,
 }
 
 impl Placer<'_> {
     /// The first triangle from `at` on that is not left out. Those that are, more than half of a closed mesh, get no further than
     /// this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
-    fn next<'c>(&self, at: &mut usize, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Found<'c>> {
+    fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Found<'c>> {
         loop {
-            let indices = self.mesh.triangle(*at)?;
-            *at += 1;
+            let indices = self.mesh.triangle(cache.triangles)?;
+            cache.triangles += 1;
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
                 return Some(Found::ToCut);
@@ -149,6 +162,9 @@ impl Placer<'_> {
                 if vertex.u == MISSING {
                     self.complete(indices[i], vertex);
                 }
+            }
+            if self.is_faceted {
+                self.complete_facet(cache);
             }
             return Some(Found::Facing(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners))));
         }
@@ -190,68 +206,63 @@ impl Placer<'_> {
         to.set_attributes(self.mesh.vertex(index), self.coloring);
     }
 
-    /// Cuts the triangle `of` the mesh, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    /// Gives the corners of the triangle last looked at its own colours.
     #[cold]
     #[inline(never)]
-    fn cut(&self, of: usize, cache: &mut Cache, stats: &mut impl Count) -> usize {
+    fn complete_facet(&self, cache: &mut Cache) {
+        let (indices, light) = (self.last(cache), self.on_face(cache));
+        // A vertex may be there twice.
+        for (owner, vertex) in cache.owners.iter().zip(&mut cache.vertices) {
+            if indices.contains(owner) {
+                vertex.set_attributes(self.mesh.vertex(*owner), self.coloring);
+                dim(&mut vertex.color, light);
+            }
+        }
+    }
+
+    /// The triangle last looked at.
+    fn last(&self, cache: &Cache) -> [u16; 3] {
+        self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
+    }
+
+    fn corners(&self, cache: &Cache) -> [&Vertex; 3] {
+        self.last(cache).map(|index| self.mesh.vertex(index))
+    }
+
+    #[inline(never)]
+    fn on_face(&self, cache: &Cache) -> [U8F8; 3] {
+        self.coloring.on_face(self.corners(cache))
+    }
+
+    /// Cuts the triangle last looked at, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    #[cold]
+    #[inline(never)]
+    fn cut(&self, cache: &mut Cache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.clipped);
-        cache.owners = [NOBODY; CACHED];
-        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
-        match self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) {
-            Some(corners) => corners.saturating_sub(2).min(MOST_CORNERS - 2),
-            None => {
-                stats.count(|stats| &mut stats.rejected);
-                0
-            }
+        cache.hints = [NOWHERE; HINTS];
+        let corners = self.corners(cache);
+        let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
+            stats.count(|stats| &mut stats.rejected);
+            return 0;
+        };
+        if self.is_faceted {
+            let light = self.on_face(cache);
+            cache.vertices.iter_mut().take(count).for_each(|vertex| dim(&mut vertex.color, light));
         }
+        count.saturating_sub(2)
     }
 
-    /// Draws the pieces of the triangle `of` the mesh, which was cut.
+    /// A piece of a triangle that was cut, unless it is left out.
     #[cold]
     #[inline(never)]
-    fn draw_pieces<F, D, S>(
-        &self,
-        of: usize,
-        pieces: usize,
-        cache: &Cache,
-        raster: &mut Raster<'_, '_, F, D, S>,
-        stats: &mut impl Count,
-    ) where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
-    {
+    fn piece<'c>(&self, piece: usize, cache: &'c Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
         let [first, rest @ ..] = &cache.vertices;
-        for pair in rest.windows(2).take(pieces) {
-            let [second, third] = pair else { return };
-            let piece = [first, second, third];
-            match Oriented::new(piece, self.cull) {
-                Some(piece) if self.coloring.is_faceted() => self.draw_faceted(of, &piece, raster, stats),
-                Some(piece) => raster.draw_oriented(&piece, stats),
-                None => stats.count(|stats| &mut stats.culled),
-            }
+        let [second, third, ..] = rest.get(piece..)? else { return None };
+        let triangle = Oriented::new([first, second, third], self.cull);
+        if triangle.is_none() {
+            stats.count(|stats| &mut stats.culled);
         }
-    }
-
-    /// Draws a piece, or all, of the triangle `of` the mesh with the light of its face.
-    #[inline(never)]
-    fn draw_faceted<F, D, S>(
-        &self,
-        of: usize,
-        piece: &Oriented<'_>,
-        raster: &mut Raster<'_, '_, F, D, S>,
-        stats: &mut impl Count,
-    ) where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
-    {
-        let mut colored = piece.vertices.map(|vertex| *vertex);
-        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
-        for vertex in &mut colored {
-            vertex.color = self.coloring.on_triangle(vertex.color, corners);
-        }
-        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: piece.area }, stats);
+        triangle
     }
 }
 
