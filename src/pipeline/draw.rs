@@ -58,21 +58,13 @@ pub(crate) fn draw<F, D, S>(
         hints: [NOWHERE; HINTS],
         owners: [0; CACHED],
         newest: 0,
+        pieces: 0,
         triangles: 0,
         vertices: [ScreenVertex::default(); CACHED],
     };
     let mut raster = Raster::new(shader, projection.orthographic, window, band);
-    while let Some(found) = placer.next(&mut cache, stats) {
-        match &found {
-            Found::Facing(triangle) => raster.draw_oriented(triangle, stats),
-            Found::ToCut => {
-                for piece in 0..placer.cut(&mut cache, stats) {
-                    if let Some(triangle) = placer.piece(piece, &cache, stats) {
-                        raster.draw_oriented(&triangle, stats);
-                    }
-                }
-            }
-        }
+    while let Some(triangle) = placer.next(&mut cache, stats) {
+        raster.draw_oriented(&triangle, stats);
     }
 }
 
@@ -86,7 +78,9 @@ fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
 #[repr(C)]
 struct Cache {
     owners: [u16; CACHED],
-    newest: u16,
+    newest: u8,
+    /// How many pieces are to be drawn of the triangle that was cut last.
+    pieces: u8,
     /// How many of the mesh's triangles were looked at.
     triangles: usize,
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
@@ -110,7 +104,7 @@ impl Cache {
         while used >> slot & 1 != 0 {
             slot = after(slot);
         }
-        self.newest = slot as u16;
+        self.newest = slot as u8;
         self.owners[slot] = index;
         self.hints[usize::from(index) % HINTS] = slot as u8;
         slot
@@ -121,12 +115,6 @@ impl Cache {
 #[inline(always)]
 fn in_cache(slot: usize) -> Option<usize> {
     (slot < CACHED).then_some(slot)
-}
-
-/// A triangle that is not left out.
-enum Found<'a> {
-    Facing(Oriented<'a>),
-    ToCut,
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -141,16 +129,23 @@ struct Placer<'a> {
 }
 
 impl Placer<'_> {
-    /// The first triangle from `at` on that is not left out. Those that are, more than half of a closed mesh, get no further than
-    /// this loop, and vertices that only they have need nothing but a position.
+    /// The next triangle, or piece of one that was cut, that is not left out. Those that are, more than half of a closed mesh,
+    /// get no further than this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
-    fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Found<'c>> {
+    fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
+        if cache.pieces > 0 && self.find_piece(cache, stats) {
+            return self.piece(cache);
+        }
         loop {
             let indices = self.mesh.triangle(cache.triangles)?;
             cache.triangles += 1;
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
-                return Some(Found::ToCut);
+                self.cut(cache, stats);
+                if self.find_piece(cache, stats) {
+                    return self.piece(cache);
+                }
+                continue;
             };
             let corners = slots.map(|slot| position(&cache.vertices[slot]));
             if self.cull.leaves_out_triangle(corners) {
@@ -166,7 +161,7 @@ impl Placer<'_> {
             if self.is_faceted {
                 self.complete_facet(cache);
             }
-            return Some(Found::Facing(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners))));
+            return Some(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners)));
         }
     }
 
@@ -234,35 +229,44 @@ impl Placer<'_> {
         self.coloring.on_face(self.corners(cache))
     }
 
-    /// Cuts the triangle last looked at, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    /// Cuts the triangle last looked at, in the cache's memory.
     #[cold]
     #[inline(never)]
-    fn cut(&self, cache: &mut Cache, stats: &mut impl Count) -> usize {
+    fn cut(&self, cache: &mut Cache, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
         cache.hints = [NOWHERE; HINTS];
         let corners = self.corners(cache);
         let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
-            stats.count(|stats| &mut stats.rejected);
-            return 0;
+            return stats.count(|stats| &mut stats.rejected);
         };
         if self.is_faceted {
             let light = self.on_face(cache);
             cache.vertices.iter_mut().take(count).for_each(|vertex| dim(&mut vertex.color, light));
         }
-        count.saturating_sub(2)
+        cache.pieces = count.saturating_sub(2) as u8;
     }
 
-    /// A piece of a triangle that was cut, unless it is left out.
+    /// Whether there is a piece left, of a triangle that was cut, that is not left out.
     #[cold]
     #[inline(never)]
-    fn piece<'c>(&self, piece: usize, cache: &'c Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
-        let [first, rest @ ..] = &cache.vertices;
-        let [second, third, ..] = rest.get(piece..)? else { return None };
-        let triangle = Oriented::new([first, second, third], self.cull);
-        if triangle.is_none() {
+    fn find_piece(&self, cache: &mut Cache, stats: &mut impl Count) -> bool {
+        while cache.pieces > 0 {
+            cache.pieces -= 1;
+            if self.piece(cache).is_some() {
+                return true;
+            }
             stats.count(|stats| &mut stats.culled);
         }
-        triangle
+        false
+    }
+
+    /// That piece, of a fan around the first vertex.
+    #[cold]
+    #[inline(never)]
+    fn piece<'c>(&self, cache: &'c Cache) -> Option<Oriented<'c>> {
+        let [first, rest @ ..] = &cache.vertices;
+        let [second, third, ..] = rest.get(usize::from(cache.pieces)..)? else { return None };
+        Oriented::new([first, second, third], self.cull)
     }
 }
 
