@@ -49,6 +49,16 @@ const CUT: RangeInclusive<i32> = -1023 * 16..=1022 * 16;
 const MAX_TEXELS: i32 = 8192 << 16;
 
 impl ScreenVertex {
+    /// The default.
+    pub(super) const ZERO: Self = Self {
+        x: I12F4::ZERO,
+        y: I12F4::ZERO,
+        q: U1F31::ZERO,
+        u: I16F16::ZERO,
+        v: I16F16::ZERO,
+        color: [U8F8::ZERO; 3],
+    };
+
     pub(crate) fn in_range(&self) -> bool {
         [self.x, self.y].iter().all(|at| GUARD_BAND.contains(&i32::from(at.to_bits())))
             && [self.u, self.v].iter().all(|t| (-MAX_TEXELS..=MAX_TEXELS).contains(&t.to_bits()))
@@ -246,8 +256,8 @@ impl Clip {
             let across = i64::from(center[axis]) << self.scale;
             let outside = (across - slope * i64::from(self.divisor(center[2]))) * sign;
             let length =
-                if self.flat != 0 { focal } else { ((focal * focal + slope * slope) as u64).isqrt() as i64 };
-            outside <= (radius + 1) * (length + 1)
+                if self.flat != 0 { focal + 1 } else { length(focal as u32, slope.unsigned_abs() as u32) };
+            outside <= (radius + 1) * length
         })
     }
 
@@ -454,6 +464,24 @@ impl Clip {
             }),
         }
     }
+}
+
+/// Just more than √(a² + b²). The library's root divides.
+#[inline(never)]
+fn length(a: u32, b: u32) -> i64 {
+    let mut shift = 0;
+    while (a | b) >> shift >= 1 << 14 {
+        shift += 1;
+    }
+    let [a, b] = [a, b].map(|side| (side >> shift) + u32::from(shift > 0));
+    let mut root = 0;
+    for bit in (0..15).rev() {
+        let next = root | 1 << bit;
+        if next * next <= a * a + b * b {
+            root = next;
+        }
+    }
+    i64::from(root + 1) << shift
 }
 
 #[inline(never)]

@@ -41,6 +41,9 @@ impl Light {
 }
 
 impl Coloring {
+    /// The vertices' own.
+    pub(super) const OWN: Self = Self { base: None, light: None };
+
     /// `base`, or the vertices' own colour without it, times light: once a vertex, or if `faceted` once a triangle.
     #[must_use]
     pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting, faceted: bool, two_sided: bool) -> Self {

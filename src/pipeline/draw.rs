@@ -9,7 +9,7 @@ use super::stats::Count;
 use super::straight::Straight;
 use super::transform::ToClip;
 use crate::math::{Pose, Vec3};
-use crate::num::{I16F16, U8F8};
+use crate::num::I16F16;
 use crate::scene::{Mesh, Projection, Vertex};
 use crate::target::{Band, DepthFormat, PixelFormat};
 use core::fmt;
@@ -18,8 +18,6 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = MOST_CORNERS;
 const HINTS: usize = 64;
-/// No slot.
-const NOWHERE: u8 = CACHED as u8;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 
@@ -45,23 +43,23 @@ pub(crate) fn draw<F, D, S>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let coloring = coloring::<F, S>(shader, pose);
+    let lit;
+    let coloring = if S::LIT {
+        lit = coloring::<F, S>(shader, pose);
+        &lit
+    } else {
+        &Coloring::OWN
+    };
     let placer = Placer {
         mesh,
         to_clip: &to_clip,
         clip: &clip,
-        coloring: &coloring,
+        coloring,
         cull: shader.cull(),
-        is_faceted: coloring.is_faceted(),
+        light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
     };
-    let mut cache = Cache {
-        hints: [NOWHERE; HINTS],
-        owners: [0; CACHED],
-        newest: 0,
-        pieces: 0,
-        triangles: 0,
-        vertices: [ScreenVertex::default(); CACHED],
-    };
+    let mut cache = Cache::ZERO;
+    cache.forget();
     let mut raster = Raster::new(shader, projection.orthographic, window, band);
     while let Some(triangle) = placer.next(&mut cache, stats) {
         raster.draw_oriented(&triangle, stats);
@@ -89,6 +87,22 @@ struct Cache {
 }
 
 impl Cache {
+    const ZERO: Self = Self {
+        owners: [0; CACHED],
+        newest: 0,
+        pieces: 0,
+        triangles: 0,
+        hints: [0; HINTS],
+        vertices: [ScreenVertex::ZERO; CACHED],
+    };
+
+    /// Nothing is found then: there is 0 in all slots but that to which the hint for 0 leads, and 1 in no other than that.
+    fn forget(&mut self) {
+        self.owners = [0; CACHED];
+        self.owners[0] = 1;
+        [self.hints[0], self.hints[1]] = [0, 1];
+    }
+
     /// The slot of a vertex.
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
@@ -125,7 +139,8 @@ struct Placer<'a> {
     clip: &'a Clip,
     coloring: &'a Coloring,
     cull: Cull,
-    is_faceted: bool,
+    /// [`Placer::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
+    light_face: Option<fn(&Self, &mut Cache, usize)>,
 }
 
 impl Placer<'_> {
@@ -158,8 +173,8 @@ impl Placer<'_> {
                     self.complete(indices[i], vertex);
                 }
             }
-            if self.is_faceted {
-                self.complete_facet(cache);
+            if let Some(light_face) = self.light_face {
+                light_face(self, cache, 0);
             }
             return Some(oriented(slots.map(|slot| &cache.vertices[slot]), area(corners)));
         }
@@ -201,15 +216,15 @@ impl Placer<'_> {
         to.set_attributes(self.mesh.vertex(index), self.coloring);
     }
 
-    /// Gives the corners of the triangle last looked at its own colours.
-    #[cold]
-    #[inline(never)]
-    fn complete_facet(&self, cache: &mut Cache) {
-        let (indices, light) = (self.last(cache), self.on_face(cache));
+    /// Gives the corners of the triangle last looked at its own colours, or those that it has after it was cut, if so many.
+    fn light_face(&self, cache: &mut Cache, cut: usize) {
+        let (indices, light) = (self.last(cache), self.coloring.on_face(self.corners(cache)));
         // A vertex may be there twice.
-        for (owner, vertex) in cache.owners.iter().zip(&mut cache.vertices) {
-            if indices.contains(owner) {
+        for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
+            if cut == 0 && indices.contains(owner) {
                 vertex.set_attributes(self.mesh.vertex(*owner), self.coloring);
+                dim(&mut vertex.color, light);
+            } else if i < cut {
                 dim(&mut vertex.color, light);
             }
         }
@@ -224,24 +239,18 @@ impl Placer<'_> {
         self.last(cache).map(|index| self.mesh.vertex(index))
     }
 
-    #[inline(never)]
-    fn on_face(&self, cache: &Cache) -> [U8F8; 3] {
-        self.coloring.on_face(self.corners(cache))
-    }
-
     /// Cuts the triangle last looked at, in the cache's memory.
     #[cold]
     #[inline(never)]
     fn cut(&self, cache: &mut Cache, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
-        cache.hints = [NOWHERE; HINTS];
+        cache.forget();
         let corners = self.corners(cache);
         let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
             return stats.count(|stats| &mut stats.rejected);
         };
-        if self.is_faceted {
-            let light = self.on_face(cache);
-            cache.vertices.iter_mut().take(count).for_each(|vertex| dim(&mut vertex.color, light));
+        if let Some(light_face) = self.light_face {
+            light_face(self, cache, count);
         }
         cache.pieces = count.saturating_sub(2) as u8;
     }
