@@ -36,10 +36,11 @@ pub(crate) fn draw<F, D, S>(
     S: Shader<F>,
 {
     stats.count(|stats| &mut stats.meshes);
-    let window = band.window().within(&projection.viewport);
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
-    if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
+    let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
+    let window = band.window().within(&projection.viewport);
+    if window.is_empty() || !is_seen {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
@@ -58,9 +59,9 @@ pub(crate) fn draw<F, D, S>(
         cull: shader.cull(),
         light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
     };
+    let mut raster = Raster::new(shader, projection.orthographic, window, band);
     let mut cache = Cache::ZERO;
     cache.forget();
-    let mut raster = Raster::new(shader, projection.orthographic, window, band);
     while let Some(triangle) = placer.next(&mut cache, stats) {
         raster.draw_oriented(&triangle, stats);
     }
@@ -364,6 +365,8 @@ where
     D: DepthFormat,
     S: Shader<F>,
 {
+    /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
+    #[inline(never)]
     pub(crate) fn new(
         shader: &'a S,
         is_orthographic: bool,
