@@ -2,7 +2,6 @@
 
 use crate::num::U8F8;
 use crate::scene::{Lighting, Vertex};
-use core::array;
 
 /// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own.
 #[derive(Debug, Default)]
@@ -14,58 +13,84 @@ pub struct Coloring {
 #[derive(Debug)]
 struct Light {
     lighting: Lighting,
-    faceted: bool,
+    shading: Shading,
     two_sided: bool,
 }
 
+/// Where light is computed, and what computes it: a pointer, so that a program that lights nothing does without.
+#[derive(Debug)]
+enum Shading {
+    Smooth(fn(&Light, &[u8; 3], &Vertex, &mut [U8F8; 3])),
+    Faceted(fn(&Light, [&Vertex; 3]) -> [U8F8; 3]),
+}
+
+impl Light {
+    /// A colour times the light at its vertex.
+    fn at_vertex(&self, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
+        self.lighting.at_vertex(vertex, self.two_sided, to);
+        if color[0] & color[1] & color[2] != 255 {
+            for i in 0..3 {
+                to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
+            }
+        }
+    }
+
+    fn at_face(&self, corners: [&Vertex; 3]) -> [U8F8; 3] {
+        self.lighting.at_face(corners.map(|vertex| vertex.position), self.two_sided)
+    }
+}
+
 impl Coloring {
+    /// The vertices' own.
+    pub(super) const OWN: Self = Self { base: None, light: None };
+
     /// `base`, or the vertices' own colour without it, times light: once a vertex, or if `faceted` once a triangle.
     #[must_use]
     pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting, faceted: bool, two_sided: bool) -> Self {
-        Self { base, light: Some(Light { lighting, faceted, two_sided }) }
+        let shading =
+            if faceted { Shading::Faceted(Light::at_face) } else { Shading::Smooth(Light::at_vertex) };
+        Self { base, light: Some(Light { lighting, shading, two_sided }) }
     }
 
     /// A vertex's colour, without the light of its triangle.
-    #[inline(never)]
+    #[inline]
     pub(super) fn of_vertex(&self, vertex: &Vertex, to: &mut [U8F8; 3]) {
-        let color = match &self.base {
-            Some(base) => base,
-            None => &vertex.color,
-        };
+        let color = self.base.as_ref().unwrap_or(&vertex.color);
         match &self.light {
-            Some(light) if !light.faceted => {
-                light.lighting.at_vertex(vertex, light.two_sided, to);
-                if color[0] & color[1] & color[2] != 255 {
-                    for i in 0..3 {
-                        to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
-                    }
-                }
+            Some(light @ Light { shading: Shading::Smooth(at_vertex), .. }) => {
+                at_vertex(light, color, vertex, to);
             }
             _ => *to = color.map(U8F8::from_num),
         }
     }
 
-    /// Whether colours are still to be multiplied by [`Coloring::on_triangle`].
+    /// Whether colours are still to be multiplied by the light [on their face](Coloring::on_face).
+    #[inline]
     pub(super) fn is_faceted(&self) -> bool {
-        matches!(self.light, Some(Light { faceted: true, .. }))
+        matches!(self.light, Some(Light { shading: Shading::Faceted(_), .. }))
     }
 
-    /// A vertex's colour of [`Coloring::of_vertex`] times the light of its triangle.
-    #[inline(never)]
-    pub(super) fn on_triangle(&self, color: [U8F8; 3], corners: [&Vertex; 3]) -> [U8F8; 3] {
+    /// The light on a triangle.
+    pub(super) fn on_face(&self, corners: [&Vertex; 3]) -> [U8F8; 3] {
         match &self.light {
-            Some(light) => {
-                let positions = corners.map(|vertex| vertex.position);
-                times(color, light.lighting.at_face(positions, light.two_sided))
-            }
-            None => color,
+            Some(light @ Light { shading: Shading::Faceted(at_face), .. }) => at_face(light, corners),
+            _ => [U8F8::MAX; 3],
         }
+    }
+
+    /// A colour of [`Coloring::of_vertex`] times the light of its triangle.
+    pub(super) fn on_triangle(&self, mut color: [U8F8; 3], corners: [&Vertex; 3]) -> [U8F8; 3] {
+        dim(&mut color, self.on_face(corners));
+        color
     }
 }
 
-/// Channel by channel.
-fn times(color: [U8F8; 3], light: [U8F8; 3]) -> [U8F8; 3] {
-    array::from_fn(|i| over_255((u32::from(color[i].to_bits()) * u32::from(light[i].to_bits())) >> 8))
+/// Multiplies a colour by light.
+#[inline(never)]
+pub(super) fn dim(color: &mut [U8F8; 3], light: [U8F8; 3]) {
+    for (channel, light) in color.iter_mut().zip(light) {
+        *channel = over_255((u32::from(channel.to_bits()) * u32::from(light.to_bits())) >> 8);
+    }
 }
 
 /// `product` / 255, within 1/256; exact if one of the factors is 255 and the other at most that.

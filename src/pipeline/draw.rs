@@ -1,8 +1,8 @@
 //! The stages in a row.
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
-use super::color::Coloring;
-use super::setup::{area, Cull, Needs, Oriented, TriangleSetup, position};
+use super::color::{Coloring, dim};
+use super::setup::{Cull, Needs, Oriented, TriangleSetup, area, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
@@ -18,7 +18,6 @@ use core::fmt;
 /// (Clipping borrows the memory for the corners of a polygon.)
 const CACHED: usize = MOST_CORNERS;
 const HINTS: usize = 64;
-const NOBODY: u32 = u32::MAX;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 
@@ -37,33 +36,34 @@ pub(crate) fn draw<F, D, S>(
     S: Shader<F>,
 {
     stats.count(|stats| &mut stats.meshes);
-    let window = band.window().within(&projection.viewport);
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
-    if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
+    let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
+    let window = band.window().within(&projection.viewport);
+    if window.is_empty() || !is_seen {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let coloring = coloring::<F, S>(shader, pose);
-    let placer = Placer { mesh, to_clip: &to_clip, clip: &clip, coloring: &coloring, cull: shader.cull() };
-    let mut cache = Cache {
-        hints: [0; HINTS],
-        owners: [NOBODY; CACHED],
-        newest: 0,
-        vertices: [ScreenVertex::default(); CACHED],
+    let lit;
+    let coloring = if S::LIT {
+        lit = coloring::<F, S>(shader, pose);
+        &lit
+    } else {
+        &Coloring::OWN
+    };
+    let placer = Placer {
+        mesh,
+        to_clip: &to_clip,
+        clip: &clip,
+        coloring,
+        cull: shader.cull(),
+        light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
     };
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
-    let is_faceted = coloring.is_faceted();
-    let mut next = 0;
-    while let Some(found) = placer.next(&mut next, &mut cache, stats) {
-        match found {
-            Found::Facing(triangle) if !is_faceted => raster.draw_oriented(&triangle, stats),
-            Found::Facing(triangle) => placer.draw_faceted(next - 1, &triangle, &mut raster, stats),
-            Found::ToCut => {
-                let pieces = placer.cut(next - 1, &mut cache, stats);
-                placer.draw_pieces(next - 1, pieces, &cache, &mut raster, stats);
-            }
-        }
+    let mut cache = Cache::ZERO;
+    cache.forget();
+    while let Some(triangle) = placer.next(&mut cache, stats) {
+        raster.draw_oriented(&triangle, stats);
     }
 }
 
@@ -76,45 +76,60 @@ fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
 /// The vertices that were placed last. In this order, in which Armv6-M needs the fewest registers to reach them.
 #[repr(C)]
 struct Cache {
+    owners: [u16; CACHED],
+    newest: u8,
+    /// How many pieces are to be drawn of the triangle that was cut last.
+    pieces: u8,
+    /// How many of the mesh's triangles were looked at.
+    triangles: usize,
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
     hints: [u8; HINTS],
-    owners: [u32; CACHED],
-    newest: usize,
     vertices: [ScreenVertex; CACHED],
 }
 
 impl Cache {
+    const ZERO: Self = Self {
+        owners: [0; CACHED],
+        newest: 0,
+        pieces: 0,
+        triangles: 0,
+        hints: [0; HINTS],
+        vertices: [ScreenVertex::ZERO; CACHED],
+    };
+
+    /// Nothing is found then: there is 0 in all slots but that to which the hint for 0 leads, and 1 in no other than that.
+    fn forget(&mut self) {
+        self.owners = [0; CACHED];
+        self.owners[0] = 1;
+        [self.hints[0], self.hints[1]] = [0, 1];
+    }
+
     /// The slot of a vertex.
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
         let slot = usize::from(self.hints[usize::from(index) % HINTS]);
-        (self.owners.get(slot) == Some(&u32::from(index))).then_some(slot)
+        (self.owners.get(slot) == Some(&index)).then_some(slot)
     }
 
     /// A vertex's slot from now on: the oldest that is not among `used` (bits).
     #[inline(always)]
     fn give(&mut self, index: u16, used: u32) -> usize {
         let after = |slot| if slot < CACHED - 1 { slot + 1 } else { 0 };
-        let mut slot = after(self.newest);
+        let mut slot = after(usize::from(self.newest));
         while used >> slot & 1 != 0 {
             slot = after(slot);
         }
-        self.newest = slot;
-        self.owners[slot] = index.into();
+        self.newest = slot as u8;
+        self.owners[slot] = index;
         self.hints[usize::from(index) % HINTS] = slot as u8;
         slot
     }
 }
 
+/// A slot that is one.
 #[inline(always)]
 fn in_cache(slot: usize) -> Option<usize> {
     (slot < CACHED).then_some(slot)
-}
-
-/// A triangle that is not left out.
-enum Found<'a> {
-    Facing(Oriented<'a>),
-    ToCut,
 }
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
@@ -125,19 +140,28 @@ struct Placer<'a> {
     clip: &'a Clip,
     coloring: &'a Coloring,
     cull: Cull,
+    /// [`Placer::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
+    light_face: Option<fn(&Self, &mut Cache, usize)>,
 }
 
 impl Placer<'_> {
-    /// The first triangle from `at` on that is not left out. Those that are, more than half of a closed mesh, get no further than
-    /// this loop, and vertices that only they have need nothing but a position.
+    /// The next triangle, or piece of one that was cut, that is not left out. Those that are, more than half of a closed mesh,
+    /// get no further than this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
-    fn next<'c>(&self, at: &mut usize, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Found<'c>> {
+    fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
+        if cache.pieces > 0 && self.find_piece(cache, stats) {
+            return self.piece(cache);
+        }
         loop {
-            let indices = self.mesh.triangle(*at)?;
-            *at += 1;
+            let indices = self.mesh.triangle(cache.triangles)?;
+            cache.triangles += 1;
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
-                return Some(Found::ToCut);
+                self.cut(cache, stats);
+                if self.find_piece(cache, stats) {
+                    return self.piece(cache);
+                }
+                continue;
             };
             let corners = slots.map(|slot| position(&cache.vertices[slot]));
             if self.cull.leaves_out_triangle(corners) {
@@ -150,8 +174,10 @@ impl Placer<'_> {
                     self.complete(indices[i], vertex);
                 }
             }
-            let vertices = slots.map(|slot| &cache.vertices[slot]);
-            return Some(Found::Facing(Oriented::of_area(vertices, area(corners))));
+            if let Some(light_face) = self.light_face {
+                light_face(self, cache, 0);
+            }
+            return Some(Oriented::of_area(slots.map(|slot| &cache.vertices[slot]), area(corners)));
         }
     }
 
@@ -191,68 +217,66 @@ impl Placer<'_> {
         to.set_attributes(self.mesh.vertex(index), self.coloring);
     }
 
-    /// Cuts the triangle `of` the mesh, in the cache's memory: how many pieces it has, as a fan around the first vertex.
+    /// Gives the corners of the triangle last looked at its own colours, or those that it has after it was cut, if so many.
+    fn light_face(&self, cache: &mut Cache, cut: usize) {
+        let (indices, light) = (self.last(cache), self.coloring.on_face(self.corners(cache)));
+        // A vertex may be there twice.
+        for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
+            if cut == 0 && indices.contains(owner) {
+                vertex.set_attributes(self.mesh.vertex(*owner), self.coloring);
+                dim(&mut vertex.color, light);
+            } else if i < cut {
+                dim(&mut vertex.color, light);
+            }
+        }
+    }
+
+    /// The triangle last looked at.
+    fn last(&self, cache: &Cache) -> [u16; 3] {
+        self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
+    }
+
+    fn corners(&self, cache: &Cache) -> [&Vertex; 3] {
+        self.last(cache).map(|index| self.mesh.vertex(index))
+    }
+
+    /// Cuts the triangle last looked at, in the cache's memory.
     #[cold]
     #[inline(never)]
-    fn cut(&self, of: usize, cache: &mut Cache, stats: &mut impl Count) -> usize {
+    fn cut(&self, cache: &mut Cache, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
-        cache.owners = [NOBODY; CACHED];
-        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
-        match self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) {
-            Some(corners) => corners.saturating_sub(2).min(MOST_CORNERS - 2),
-            None => {
-                stats.count(|stats| &mut stats.rejected);
-                0
-            }
+        cache.forget();
+        let corners = self.corners(cache);
+        let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
+            return stats.count(|stats| &mut stats.rejected);
+        };
+        if let Some(light_face) = self.light_face {
+            light_face(self, cache, count);
         }
+        cache.pieces = count.saturating_sub(2) as u8;
     }
 
-    /// Draws the pieces of the triangle `of` the mesh, which was cut.
+    /// Whether there is a piece left, of a triangle that was cut, that is not left out.
     #[cold]
     #[inline(never)]
-    fn draw_pieces<F, D, S>(
-        &self,
-        of: usize,
-        pieces: usize,
-        cache: &Cache,
-        raster: &mut Raster<'_, '_, F, D, S>,
-        stats: &mut impl Count,
-    ) where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
-    {
-        let [first, rest @ ..] = &cache.vertices;
-        for pair in rest.windows(2).take(pieces) {
-            let [second, third] = pair else { return };
-            let piece = [first, second, third];
-            match Oriented::new(piece, self.cull) {
-                Some(piece) if self.coloring.is_faceted() => self.draw_faceted(of, &piece, raster, stats),
-                Some(piece) => raster.draw_oriented(&piece, stats),
-                None => stats.count(|stats| &mut stats.culled),
+    fn find_piece(&self, cache: &mut Cache, stats: &mut impl Count) -> bool {
+        while cache.pieces > 0 {
+            cache.pieces -= 1;
+            if self.piece(cache).is_some() {
+                return true;
             }
+            stats.count(|stats| &mut stats.culled);
         }
+        false
     }
 
-    /// Draws a piece, or all, of the triangle `of` the mesh with the light of its face.
+    /// That piece, of a fan around the first vertex.
+    #[cold]
     #[inline(never)]
-    fn draw_faceted<F, D, S>(
-        &self,
-        of: usize,
-        piece: &Oriented<'_>,
-        raster: &mut Raster<'_, '_, F, D, S>,
-        stats: &mut impl Count,
-    ) where
-        F: PixelFormat,
-        D: DepthFormat,
-        S: Shader<F>,
-    {
-        let mut colored = piece.vertices.map(|vertex| *vertex);
-        let corners = self.mesh.triangle(of).unwrap_or_default().map(|index| self.mesh.vertex(index));
-        for vertex in &mut colored {
-            vertex.color = self.coloring.on_triangle(vertex.color, corners);
-        }
-        raster.draw_oriented(&Oriented { vertices: colored.each_ref(), area: piece.area }, stats);
+    fn piece<'c>(&self, cache: &'c Cache) -> Option<Oriented<'c>> {
+        let [first, rest @ ..] = &cache.vertices;
+        let [second, third, ..] = rest.get(usize::from(cache.pieces)..)? else { return None };
+        Oriented::new([first, second, third], self.cull)
     }
 }
 
@@ -323,6 +347,9 @@ where
     S: Shader<F>,
 {
     /// For a camera that may be orthographic, and colours that may all be grey.
+    ///
+    /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
+    #[inline(never)]
     pub(crate) fn new(
         shader: &'a S,
         kind: [bool; 2],

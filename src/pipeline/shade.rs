@@ -112,6 +112,10 @@ pub trait Shader<F: PixelFormat> {
     /// How exactly the attributes follow perspective.
     type Quality: Quality;
 
+    /// Whether [`Shader::coloring`] may say anything but the default. Without it drawing takes 100 bytes less of the stack.
+    #[doc(hidden)]
+    const LIT: bool = true;
+
     /// Which attributes [`Shader::color`] reads; the fewer, the faster.
     fn inputs(&self) -> Inputs;
 

@@ -267,6 +267,8 @@ impl<'a, Q> Textured<'a, Q> {
 impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
     type Quality = Q;
 
+    const LIT: bool = false;
+
     fn cull(&self) -> Cull {
         self.cull
     }
