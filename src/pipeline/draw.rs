@@ -377,12 +377,20 @@ where
     /// A triangle that is clockwise on the screen, its nearest vertex first.
     #[inline]
     pub(crate) fn draw_in_order(&mut self, vertices: [&ScreenVertex; 3]) {
-        self.draw_oriented(&Oriented::in_order(vertices), &mut ());
+        self.setup.corners = vertices.map(position);
+        let area = area(self.setup.corners) as u32;
+        self.draw_placed(&Oriented { vertices, area }, &mut ());
     }
 
-    #[inline(never)]
+    #[inline]
     fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
         self.setup.corners = triangle.vertices.map(position);
+        self.draw_placed(triangle, stats);
+    }
+
+    /// A triangle whose corners are in the set-up.
+    #[inline(never)]
+    fn draw_placed(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
         self.rows.start(&self.setup.corners, &self.window);
         if self.rows.are_none() {
             return stats.count(|stats| &mut stats.out_of_sight);

@@ -191,12 +191,6 @@ impl<'a> Oriented<'a> {
     pub(super) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
         Self { vertices: in_order(vertices, area, |vertex| vertex.q.to_bits()), area: area.unsigned_abs() }
     }
-
-    /// Of vertices that are in order already.
-    #[inline]
-    pub(super) fn in_order(vertices: [&'a ScreenVertex; 3]) -> Self {
-        Self { vertices, area: area(vertices.map(position)) as u32 }
-    }
 }
 
 /// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
