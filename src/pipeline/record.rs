@@ -186,7 +186,7 @@ impl Recorder<'_, '_> {
     /// From slots and q, in the order in which set-up takes its corners, which is found once for all bands.
     #[inline(always)]
     fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
-        let corners = in_order(corners, area, |(_, q)| q.to_bits() & !KEPT.to_bits()).map(|(slot, _)| slot);
+        let corners = in_order(corners, area, |(_, q)| q.to_bits()).map(|(slot, _)| slot);
         self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
@@ -199,7 +199,7 @@ impl Recorder<'_, '_> {
         };
         let q = vertex.q;
         if q & KEPT != U1F31::ZERO {
-            return (vertex.attributes[3], q);
+            return (vertex.attributes[3], q & !KEPT);
         }
         let next = self.next;
         (vertex.q, self.next) = (q | KEPT, next + 1);

@@ -213,12 +213,21 @@ impl Rows {
         }
     }
 
-    /// Whether it has none, or just one that is empty: many a small triangle has no more in a band.
+    /// Whether it has none, or just one or two that are empty: many a small triangle has no more in a band.
     #[inline]
     pub(super) fn are_none(&self) -> bool {
-        let next = self.row + 1;
-        next > self.end
-            || next == self.end && next <= self.knee && self.left.x >> FRACTION >= self.right.x >> FRACTION
+        let count = self.end - self.row;
+        if count <= 0 {
+            return true;
+        }
+        let is_empty = |left: i32, right: i32| left >> FRACTION >= right >> FRACTION;
+        let (left, right) = (&self.left, &self.right);
+        count <= 2
+            && self.end <= self.knee
+            && is_empty(left.x, right.x)
+            && (count == 1
+                || !self.is_long
+                    && is_empty(left.x.wrapping_add(left.slope), right.x.wrapping_add(right.slope)))
     }
 
     /// Whether they are at most 32 pixels wide and less high, and all columns within the window.

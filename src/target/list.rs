@@ -227,18 +227,19 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
     let rows = steps_of(&window);
     let within = |draw: &Draw<'_, S>| window.clone().within(&draw.viewport);
     let kind = |draw: &Draw<'_, S>| [draw.is_orthographic, draw.is_gray];
-    let mut ids = 0..draw.end;
+    // Its first triangle, and how many it has.
+    let (mut first, mut count) = (0, draw.end);
     let mut raster = Raster::new(draw.shader, kind(draw), within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
     let mut seen = Touching::new(view.triangles, index, rows);
     while let Some((id, triangle)) = seen.next() {
-        if !ids.contains(&id) {
+        if id.wrapping_sub(first) >= count {
             let number = draws.partition_point(|draw| draw.end <= id);
-            let start = number.checked_sub(1).and_then(|before| draws.get(before)).map_or(0, |draw| draw.end);
+            first = number.checked_sub(1).and_then(|before| draws.get(before)).map_or(0, |draw| draw.end);
             let Some(other) = draws.get(number) else {
                 return;
             };
-            (draw, ids) = (other, start..other.end);
+            (draw, count) = (other, other.end - first);
             raster.change(draw.shader, kind(draw), within(draw));
         }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
