@@ -350,12 +350,7 @@ where
     ///
     /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
     #[inline(never)]
-    pub(crate) fn new(
-        shader: &'a S,
-        kind: [bool; 2],
-        window: Window,
-        band: &'a mut Band<'b, F, D>,
-    ) -> Self {
+    pub(crate) fn new(shader: &'a S, kind: [bool; 2], window: Window, band: &'a mut Band<'b, F, D>) -> Self {
         let (setup, rows) = (TriangleSetup::new(), Rows::default());
         Self { shader, band, window, needs: needs::<F, D, S>(shader, kind), setup, rows }
     }

@@ -91,7 +91,19 @@ pub(crate) fn record(
     let to_slot = start.wrapping_sub(first.into());
     let own = start..start + count;
     let first_triangle = triangles.len();
-    let mut recorder = Recorder { vertices, triangles, mesh, to_clip, clip, style, window, to_slot, own, is_any_cut_off: false, next: start as u16 };
+    let mut recorder = Recorder {
+        vertices,
+        triangles,
+        mesh,
+        to_clip,
+        clip,
+        style,
+        window,
+        to_slot,
+        own,
+        is_any_cut_off: false,
+        next: start as u16,
+    };
     recorder.place(first, stats);
     recorder.add_triangles(stats)?;
     Ok(recorder.move_together(first, first_triangle))
@@ -315,6 +327,9 @@ impl Recorder<'_, '_> {
             let Some(place) = vertices.get_mut(hole) else {
                 break;
             };
+            if place.q & KEPT == U1F31::ZERO {
+                continue;
+            }
             let mut vertex = *place;
             place.q &= !KEPT;
             // Each goes where it belongs, and takes the place of one that goes on.
@@ -340,7 +355,12 @@ impl Recorder<'_, '_> {
         let freed = own.end - usize::from(next);
         if vertices.len() > own.end {
             is_gray &= Self::move_down(vertices, own.end, freed);
-            for corner in triangles.get_mut(first_triangle..).unwrap_or_default().iter_mut().flat_map(|t| &mut t.corners) {
+            for corner in triangles
+                .get_mut(first_triangle..)
+                .unwrap_or_default()
+                .iter_mut()
+                .flat_map(|t| &mut t.corners)
+            {
                 if usize::from(*corner) >= own.end {
                     *corner -= freed as u16;
                 }

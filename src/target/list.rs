@@ -6,8 +6,8 @@ use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
-    Count, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader,
-    Style, Window, record,
+    Count, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader, Style,
+    Window, record,
 };
 use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
 use core::fmt;
