@@ -216,10 +216,10 @@ impl Rows {
     /// Whether it has none, or just one or two that are empty: many a small triangle has no more in a band.
     #[inline]
     pub(super) fn are_none(&self) -> bool {
-        let count = self.end - self.row;
-        if count <= 0 {
+        if self.row >= self.end {
             return true;
         }
+        let count = self.end - self.row;
         let is_empty = |left: i32, right: i32| left >> FRACTION >= right >> FRACTION;
         let (left, right) = (&self.left, &self.right);
         count <= 2
