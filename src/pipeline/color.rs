@@ -77,12 +77,6 @@ impl Coloring {
             _ => [U8F8::MAX; 3],
         }
     }
-
-    /// A colour of [`Coloring::of_vertex`] times the light of its triangle.
-    pub(super) fn on_triangle(&self, mut color: [U8F8; 3], corners: [&Vertex; 3]) -> [U8F8; 3] {
-        dim(&mut color, self.on_face(corners));
-        color
-    }
 }
 
 /// Multiplies a colour by light.

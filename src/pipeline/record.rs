@@ -1,7 +1,7 @@
 //! Stages 1 and 2 for later: meshes become the screen vertices and triangles of a display list.
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
-use super::color::Coloring;
+use super::color::{Coloring, dim};
 use super::listed::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::setup::{Cull, area, in_order};
 use super::shade::{Inputs, Shader};
@@ -230,6 +230,7 @@ impl Recorder<'_, '_> {
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
         let mut corners = [(0, U1F31::ZERO); 3];
+        let light = self.light_of(indices);
         for (corner, index) in corners.iter_mut().zip(indices) {
             let slot = usize::from(index).wrapping_add(self.to_slot);
             let of_mesh = self.mesh.vertex(index);
@@ -239,17 +240,19 @@ impl Recorder<'_, '_> {
             }
             [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
             self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
-            self.light_face(&mut vertex, indices);
+            if let Some(light) = light {
+                dim(&mut vertex.color, light);
+            }
             *corner = (self.push(&vertex)?, vertex.q);
         }
         self.add(corners, area, rows)
     }
 
-    fn light_face(&self, vertex: &mut ScreenVertex, indices: [u16; 3]) {
-        if self.style.coloring.is_faceted() {
-            let corners = indices.map(|index| self.mesh.vertex(index));
-            vertex.color = self.style.coloring.on_triangle(vertex.color, corners);
-        }
+    /// The light of a face, if colours are to be dimmed by it.
+    fn light_of(&self, indices: [u16; 3]) -> Option<[U8F8; 3]> {
+        let coloring = &self.style.coloring;
+        let corners = || indices.map(|index| self.mesh.vertex(index));
+        coloring.is_faceted().then(|| coloring.on_face(corners()))
     }
 
     /// The pieces of a triangle that has to be cut, as a fan.
@@ -263,6 +266,9 @@ impl Recorder<'_, '_> {
             stats.count(|stats| &mut stats.rejected);
             return Ok(());
         };
+        if let Some(light) = self.light_of(indices) {
+            polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
+        }
         let mut slots = [None; MOST_CORNERS];
         for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
             let fan = [0, piece, piece + 1];
@@ -279,10 +285,7 @@ impl Recorder<'_, '_> {
             for (corner, i) in corners.iter_mut().zip(fan) {
                 *corner = match slots[i] {
                     Some(slot) => slot,
-                    None => {
-                        self.light_face(&mut polygon[i], indices);
-                        self.push(&polygon[i])?
-                    }
+                    None => self.push(&polygon[i])?,
                 };
                 slots[i] = Some(*corner);
             }
