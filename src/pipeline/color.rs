@@ -70,13 +70,19 @@ impl Coloring {
         matches!(self.light, Some(Light { shading: Shading::Faceted(_), .. }))
     }
 
-    /// The light on a triangle.
-    pub(super) fn on_face(&self, corners: [&Vertex; 3]) -> [U8F8; 3] {
+    /// The light on a triangle, if colours are to be [dimmed](dim) by it.
+    pub(super) fn on_face(&self, corners: [&Vertex; 3]) -> Option<[U8F8; 3]> {
         match &self.light {
-            Some(light @ Light { shading: Shading::Faceted(at_face), .. }) => at_face(light, corners),
-            _ => [U8F8::MAX; 3],
+            Some(light @ Light { shading: Shading::Faceted(at_face), .. }) => Some(at_face(light, corners)),
+            _ => None,
         }
     }
+}
+
+/// Whether a colour's channels are the same.
+#[inline]
+pub(super) fn is_gray<T: PartialEq>([red, green, blue]: [T; 3]) -> bool {
+    red == green && green == blue
 }
 
 /// Multiplies a colour by light.

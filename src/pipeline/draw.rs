@@ -163,8 +163,8 @@ impl Placer<'_> {
                 }
                 continue;
             };
-            let corners = slots.map(|slot| position(&cache.vertices[slot]));
-            if self.cull.leaves_out_triangle(corners) {
+            let area = area(slots.map(|slot| position(&cache.vertices[slot])));
+            if self.cull.leaves_out(area) {
                 stats.count(|stats| &mut stats.culled);
                 continue;
             }
@@ -177,7 +177,7 @@ impl Placer<'_> {
             if let Some(light_face) = self.light_face {
                 light_face(self, cache, 0);
             }
-            return Some(Oriented::of_area(slots.map(|slot| &cache.vertices[slot]), area(corners)));
+            return Some(Oriented::of_area(slots.map(|slot| &cache.vertices[slot]), area));
         }
     }
 
@@ -219,7 +219,10 @@ impl Placer<'_> {
 
     /// Gives the corners of the triangle last looked at its own colours, or those that it has after it was cut, if so many.
     fn light_face(&self, cache: &mut Cache, cut: usize) {
-        let (indices, light) = (self.last(cache), self.coloring.on_face(self.corners(cache)));
+        let indices = self.last(cache);
+        let Some(light) = self.coloring.on_face(self.corners(cache)) else {
+            return;
+        };
         // A vertex may be there twice.
         for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
             if cut == 0 && indices.contains(owner) {

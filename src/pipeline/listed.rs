@@ -1,6 +1,7 @@
 //! What a display list keeps: screen vertices and triangles.
 
 use super::clip::ScreenVertex;
+use super::color::is_gray;
 use super::shade::Inputs;
 use super::span::Window;
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
@@ -58,6 +59,12 @@ impl ListVertex {
     fn uv(&self) -> [I16F16; 2] {
         let [u, u_whole, v, v_whole] = self.attributes.map(u32::from);
         [u | u_whole << 16, v | v_whole << 16].map(|bits| I16F16::from_bits(bits as i32))
+    }
+
+    /// Of a vertex with colour.
+    pub(super) fn is_gray(&self) -> bool {
+        let [red, green, blue, _] = self.attributes;
+        is_gray([red, green, blue])
     }
 
     pub(super) fn position(&self) -> [i32; 2] {

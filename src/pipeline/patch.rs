@@ -7,7 +7,7 @@
 //!
 //! What a pixel shows depends on its triangle alone, not on what hides it or where the band begins: rows are shaded whole.
 
-use super::fill::{Each, Fill};
+use super::fill::{Each, Fill, sized};
 use super::setup::TriangleSetup;
 use super::shade::{Pixels, Quality, sealed::Sealed};
 use super::span::Rows;
@@ -179,11 +179,4 @@ impl<W, D: DepthFormat> Row<'_, W, D> {
             self.draw((at, other), next, |(at, other)| word(texture.fetch_packed(at), other));
         }
     }
-}
-
-/// The texel at packed coordinates of a texture of so many.
-#[inline]
-fn sized<const COUNT: usize>(texture: &Texture<'_>, texels: &[u16; COUNT]) -> impl Fn(u32) -> u16 {
-    let [mask, multiplier] = texture.mask_and_multiplier();
-    move |packed| texels[((packed & mask).wrapping_mul(multiplier) >> (32 - COUNT.trailing_zeros())) as usize]
 }

@@ -230,7 +230,7 @@ impl Recorder<'_, '_> {
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
         let mut corners = [(0, U1F31::ZERO); 3];
-        let light = self.light_of(indices);
+        let light = self.style.coloring.on_face(indices.map(|index| self.mesh.vertex(index)));
         for (corner, index) in corners.iter_mut().zip(indices) {
             let slot = usize::from(index).wrapping_add(self.to_slot);
             let of_mesh = self.mesh.vertex(index);
@@ -248,13 +248,6 @@ impl Recorder<'_, '_> {
         self.add(corners, area, rows)
     }
 
-    /// The light of a face, if colours are to be dimmed by it.
-    fn light_of(&self, indices: [u16; 3]) -> Option<[U8F8; 3]> {
-        let coloring = &self.style.coloring;
-        let corners = || indices.map(|index| self.mesh.vertex(index));
-        coloring.is_faceted().then(|| coloring.on_face(corners()))
-    }
-
     /// The pieces of a triangle that has to be cut, as a fan.
     #[cold]
     #[inline(never)]
@@ -266,7 +259,7 @@ impl Recorder<'_, '_> {
             stats.count(|stats| &mut stats.rejected);
             return Ok(());
         };
-        if let Some(light) = self.light_of(indices) {
+        if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
         }
         let mut slots = [None; MOST_CORNERS];
@@ -325,7 +318,7 @@ impl Recorder<'_, '_> {
     #[inline(never)]
     fn move_together(self, first: u16, first_triangle: usize) -> bool {
         let Self { vertices, triangles, mesh, style, own, next, .. } = self;
-        let mut is_gray = style.has_color();
+        let mut all_gray = style.has_color();
         for hole in own.clone() {
             let Some(place) = vertices.get_mut(hole) else {
                 break;
@@ -339,8 +332,7 @@ impl Recorder<'_, '_> {
             let mut from = hole;
             while vertex.q & KEPT != U1F31::ZERO {
                 let to = usize::from(vertex.attributes[3]);
-                let [red, green, blue, _] = vertex.attributes;
-                is_gray &= red == green && green == blue;
+                all_gray &= vertex.is_gray();
                 let index = first + (from - own.start) as u16;
                 if style.inputs == Inputs::Uv {
                     vertex.attributes = ListVertex::attributes_of(mesh.vertex(index).uv.map(I16F16::from));
@@ -357,7 +349,7 @@ impl Recorder<'_, '_> {
         }
         let freed = own.end - usize::from(next);
         if vertices.len() > own.end {
-            is_gray &= Self::move_down(vertices, own.end, freed);
+            all_gray &= Self::move_down(vertices, own.end, freed);
             for corner in triangles
                 .get_mut(first_triangle..)
                 .unwrap_or_default()
@@ -370,24 +362,23 @@ impl Recorder<'_, '_> {
             }
         }
         vertices.truncate(vertices.len() - freed);
-        is_gray
+        all_gray
     }
 
     /// Moves the slots from `start` on that far down. Returns whether all colours are grey.
     #[cold]
     #[inline(never)]
     fn move_down(vertices: &mut VecView<ListVertex>, start: usize, by: usize) -> bool {
-        let mut is_gray = true;
+        let mut all_gray = true;
         for from in start..vertices.len() {
             let Some(&vertex) = vertices.get(from) else {
                 break;
             };
-            let [red, green, blue, _] = vertex.attributes;
-            is_gray &= red == green && green == blue || vertex.x == CUT_OFF;
+            all_gray &= vertex.is_gray() || vertex.x == CUT_OFF;
             if let Some(place) = vertices.get_mut(from - by) {
                 *place = vertex;
             }
         }
-        is_gray
+        all_gray
     }
 }

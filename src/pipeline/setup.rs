@@ -36,6 +36,7 @@
 
 use super::attribute::Attribute;
 use super::clip::ScreenVertex;
+use super::color::is_gray;
 use super::patch::STRAIGHT;
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
@@ -64,12 +65,6 @@ impl Cull {
             Self::Front => area < 0,
             Self::None => false,
         }
-    }
-
-    /// Whether a triangle between positions in 1/16 px, within the guard band, is left out.
-    #[inline]
-    pub(super) fn leaves_out_triangle(self, positions: [[i32; 2]; 3]) -> bool {
-        self.leaves_out(area(positions))
     }
 }
 
@@ -240,11 +235,7 @@ impl TriangleSetup {
             return;
         }
         if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
-            let is_gray = |vertex: &ScreenVertex| {
-                let [red, green, blue] = vertex.color;
-                red == green && green == blue
-            };
-            self.gray = needs.gray || triangle.vertices.into_iter().all(is_gray);
+            self.gray = needs.gray || triangle.vertices.into_iter().all(|vertex| is_gray(vertex.color));
         }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);

@@ -251,12 +251,11 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
 fn visible<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> (Range<usize>, usize) {
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
     // It is linear in between.
-    let start_and_end = if near_w.min(last) >> 15 != 0 {
+    let [start, end] = if near_w.min(last) >> 15 != 0 {
         first_run(depth, near_w, step, D::test_small)
     } else {
         first_run_far_away::<D>(depth, near_w, step)
     };
-    let [start, end] = start_and_end;
     (start..end, (end + 1).min(depth.len()))
 }
 
@@ -298,23 +297,18 @@ fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W,
         near_w = near_w.wrapping_add_signed(step);
         passes
     };
-    let count = depth.len();
     let (blocks, rest) = depth.as_chunks_mut::<8>();
-    let mut blocks = blocks.iter_mut();
-    while let Some(block) = blocks.next() {
+    let tested = 8 * blocks.len();
+    for (n, block) in blocks.iter_mut().enumerate() {
         // Unknown, so that not all of its multiples are kept in memory.
         let step = core::hint::black_box(step);
         for (i, stored) in block.iter_mut().enumerate() {
             if !passes(stored, step) {
-                return count - rest.len() - 8 * blocks.len() - 8 + i;
+                return 8 * n + i;
             }
         }
     }
-    let mut rest = rest.iter_mut();
-    match rest.position(|stored| !passes(stored, step)) {
-        Some(_) => count - rest.len() - 1,
-        None => count,
-    }
+    tested + rest.iter_mut().position(|stored| !passes(stored, step)).unwrap_or(rest.len())
 }
 
 /// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.

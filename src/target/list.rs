@@ -206,7 +206,6 @@ impl<S> Draw<'_, S> {
             && self.viewport == other.viewport
             && self.inputs == other.inputs
             && self.is_orthographic == other.is_orthographic
-            && self.is_gray == other.is_gray
     }
 }
 
@@ -288,6 +287,7 @@ where
             Ok(_) => match self.draws.last_mut() {
                 Some(last) if last.is_like(&draw) => {
                     last.end = draw.end;
+                    last.is_gray &= draw.is_gray;
                     Ok(())
                 }
                 _ => self.draws.push(draw).map_err(|_| CapacityError::Draws { capacity: D }),
