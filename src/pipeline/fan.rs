@@ -12,12 +12,11 @@
 
 use super::clip::ScreenVertex;
 
-/// Puts that vertex first around which no triangle is turned over, or the least of them.
+/// The vertex around which no triangle is turned over, or the least of them.
 #[inline(never)]
-pub(super) fn arrange(polygon: &mut [ScreenVertex]) {
-    let count = polygon.len();
+pub(super) fn center(polygon: &[ScreenVertex]) -> usize {
     let mut best = (u64::MAX, 0);
-    for first in 0..count {
+    for first in 0..polygon.len() {
         let turned = turned_over(polygon, first);
         if turned < best.0 {
             best = (turned, first);
@@ -26,12 +25,7 @@ pub(super) fn arrange(polygon: &mut [ScreenVertex]) {
             break;
         }
     }
-    // The library's rotation takes 2 KiB.
-    for _ in 0..best.1 {
-        for i in 1..count {
-            polygon.swap(i - 1, i);
-        }
-    }
+    best.1
 }
 
 /// Twice the area, in 1/256 px², of the triangles around a vertex that run the other way than the polygon.
@@ -65,6 +59,10 @@ mod tests {
             ScreenVertex { x, y, ..Default::default() }
         };
         places.iter().map(place).collect()
+    }
+
+    fn arrange(polygon: &mut [ScreenVertex]) {
+        polygon.rotate_left(center(polygon));
     }
 
     #[test]

@@ -50,8 +50,13 @@ impl<'l> Touching<'l> {
     /// The next, with its number.
     #[inline(always)]
     pub(super) fn next(&mut self) -> Option<(u16, &'l ListTriangle)> {
-        let Index::Rows(blocks) = self.index else {
-            return self.next_in_order();
+        let blocks = match self.index {
+            Index::Rows(blocks) => blocks,
+            Index::Order(order) => {
+                let (behind, id, triangle) = next_in_order(self.triangles, order, self.rows, self.at)?;
+                self.at = behind;
+                return Some((id, triangle));
+            }
         };
         loop {
             while self.at == self.end {
@@ -69,21 +74,21 @@ impl<'l> Touching<'l> {
             }
         }
     }
+}
 
-    #[inline(never)]
-    fn next_in_order(&mut self) -> Option<(u16, &'l ListTriangle)> {
-        let Index::Order(order) = self.index else {
-            return None;
-        };
-        loop {
-            let id = *order.get(self.at)?;
-            self.at += 1;
-            match self.triangles.get(usize::from(id)) {
-                Some(triangle) if touch(triangle.rows, self.rows) => return Some((id, triangle)),
-                _ => {}
-            }
-        }
-    }
+/// The place behind the next of the order that touches, from `at` on, its number, and itself. It knows nothing of [`Touching`], so
+/// that that stays in registers.
+#[inline(never)]
+fn next_in_order<'l>(
+    triangles: &'l [ListTriangle],
+    order: &[u16],
+    rows: [u8; 2],
+    at: usize,
+) -> Option<(usize, u16, &'l ListTriangle)> {
+    order.iter().enumerate().skip(at).find_map(|(at, &id)| {
+        let triangle = triangles.get(usize::from(id)).filter(|triangle| touch(triangle.rows, rows))?;
+        Some((at + 1, id, triangle))
+    })
 }
 
 /// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.

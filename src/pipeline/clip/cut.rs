@@ -3,7 +3,7 @@
 //! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge.
 
 use super::super::color::Coloring;
-use super::super::fan::arrange;
+use super::super::fan::center;
 use super::super::transform::{ClipVertex, ToClip};
 use super::{CUT, Clip, FINER, GUARD_BAND, ScreenVertex};
 use crate::math::recip::Reciprocal;
@@ -56,7 +56,7 @@ impl<'a> Polygon<'a> {
         }
     }
 
-    /// Moves the vertices before `first` to the end, by three reversals: the library's way takes more stack and flash.
+    /// Moves the vertices before `first` to the end, by three reversals: the library's way takes 2 KiB of flash, and more stack.
     #[inline(never)]
     fn rotate(&mut self, first: usize) {
         if first > 0 {
@@ -121,7 +121,7 @@ impl Clip {
         if !(0..count).all(|i| self.put_on_screen(&mut polygon, i)) {
             return None;
         }
-        arrange(to.get_mut(..count)?);
+        polygon.rotate(center(polygon.vertices.get(..count)?));
         Some(count)
     }
 
