@@ -20,7 +20,7 @@ use fixel::embedded_graphics::text::Text;
 use fixel::{
     Affine, Background, Band, BigEndian, Camera, CapacityError, Changes, Depth16, DepthFormat, DisplayList,
     Exact, Flushed, Gradient, Material, Mesh, NoDepth, Picture, PixelFormat, Pose, Quality, QuarterPixel,
-    Texture, Vec3, Vertex,
+    Texture, Turn, Vec3, Vertex,
 };
 use proptest::prelude::*;
 
@@ -562,6 +562,41 @@ fn without_depth_a_list_is_drawn_back_to_front() {
         Ok(())
     });
     assert!(shown.get() > 10_000);
+}
+
+#[test]
+fn draws_of_a_mesh_count_as_one_whatever_colours_are_seen() {
+    // Grey from the front, coloured from behind.
+    const CARD: Mesh = Mesh::new(
+        &[
+            Vertex::new(-1.0, -1.0, 0.0).color(40, 40, 40),
+            Vertex::new(1.0, -1.0, 0.0).color(200, 200, 200),
+            Vertex::new(0.0, 1.0, 0.0).color(120, 120, 120),
+            Vertex::new(-1.0, -1.0, 0.0).color(255, 0, 0),
+            Vertex::new(1.0, -1.0, 0.0).color(0, 255, 0),
+            Vertex::new(0.0, 1.0, 0.0).color(0, 0, 255),
+        ],
+        &[[0, 1, 2], [4, 3, 5]],
+    );
+    let (size, material) = (Size::new(40, 24), Material::gouraud());
+    let camera = Camera::perspective(Turn::from_degrees(60), size).at(Vec3::lit(0.0, 0.0, 4.0));
+    let front = Pose::IDENTITY.at(Vec3::lit(-1.2, 0.0, 0.0));
+    let behind = Pose::IDENTITY.rotated_y(Turn::from_degrees(180)).at(Vec3::lit(1.2, 0.0, 0.0));
+    for poses in [[front, behind], [behind, front]] {
+        let mut list = DisplayList::<12, 4, 1, _, Rgb565>::new();
+        let (mut whole, mut depth) = ([0; 40 * 24], [0; 40 * 24]);
+        let mut frame = Band::<Rgb565, Depth16>::new(size, &mut whole, &mut depth).expect("it fits");
+        for pose in &poses {
+            camera.draw(&CARD, pose, &material, &mut list).expect("one draw, two triangles");
+            camera.draw(&CARD, pose, &material, &mut frame);
+        }
+        assert_eq!(list.lengths(), [6, 2, 1]);
+        let (mut pixels, mut depth) = ([0; 40 * 24], [0; 40 * 24]);
+        let mut band = Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth).expect("it fits");
+        list.render(0, &mut band);
+        assert!(pixels == whole);
+        assert!(whole.iter().any(|&word| word >> 11 != word & 31), "no colour is seen");
+    }
 }
 
 #[test]
