@@ -122,7 +122,7 @@ impl Attribute {
         (at << self.scale_log2, step << self.scale_log2)
     }
 
-    /// As [`Attribute::along`], without `scale_log2`.
+    /// As [`Attribute::along`], without `scale_log2`. Calling it from there costs small triangles 2 % on a Cortex-M0+.
     #[inline]
     pub(super) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
         let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
