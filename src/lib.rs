@@ -121,29 +121,32 @@ extern crate std;
 #[doc = include_str!("cost.md")]
 pub mod cost {}
 
+mod draw;
+mod frame;
+mod geometry;
 mod math;
 pub mod num;
-mod pipeline;
+mod raster;
 mod scene;
-mod target;
+mod shade;
 
 pub use embedded_graphics;
 pub use fixed;
 
+pub use draw::{
+    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, PerspectiveImage, ShadedTriangle,
+};
+pub use frame::{
+    Background, Band, BigEndian, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat, TargetError,
+};
+pub use geometry::{Coloring, RangeError, ScreenVertex, Stats, draw_triangle};
 pub use math::{Pose, Quaternion, Turn, Vec3};
-pub use pipeline::{
-    Affine, Coloring, Cull, Exact, Inputs, Pixels, Quality, QuarterPixel, RangeError, ScreenVertex, Shader,
-    Stats, Varying, draw_triangle,
-};
+pub use raster::Cull;
 pub use scene::{
-    Camera, CornersError, Light, Lighting, Lights, LightsError, Material, Mesh, MeshError, Normal,
-    PerspectiveImage, Projected, ShadedTriangle, Texture, TextureError, Textured, Vertex, Wrap, shapes,
-    texels,
+    Camera, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, Projected, Texture, TextureError,
+    Vertex, Wrap, shapes, texels,
 };
-pub use target::{
-    Background, Band, BigEndian, Canvas, CapacityError, Changes, Depth16, DepthFormat, DisplayList, Flushed,
-    Gradient, NoDepth, Picture, PixelFormat, TargetError,
-};
+pub use shade::{Affine, Exact, Inputs, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
 
 /// What most programs use: `use fixel::prelude::*;`.
 pub mod prelude {

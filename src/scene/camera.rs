@@ -1,11 +1,12 @@
 //! The camera: where from and how wide a scene is seen.
 
-use super::Mesh;
+use super::mesh::Mesh;
 use super::projection::{Projection, clamped, limited};
+use crate::draw::Canvas;
+use crate::geometry;
+use crate::geometry::Stats;
 use crate::math::{Pose, Turn, Vec3, normalized};
 use crate::num::{I2F14, I12F4, I16F16, U1F31, bits_from_f32};
-use crate::pipeline::{self, Stats};
-use crate::target::Canvas;
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -218,7 +219,7 @@ impl Camera {
     /// in the guard band of −1023 … 1022 px.
     #[must_use]
     pub fn project(&self, point: Vec3) -> Option<Projected> {
-        let at = pipeline::project(&self.projection, &self.pose, point)?;
+        let at = geometry::project(&self.projection, &self.pose, point)?;
         Some(Projected { x: at.x, y: at.y, q: at.q })
     }
 

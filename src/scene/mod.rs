@@ -1,18 +1,14 @@
-//! What a user describes: meshes, textures, materials, a camera.
+//! What a user describes: meshes, textures, lights, a camera. Nothing here knows a pixel in memory.
 
 mod camera;
-mod drawables;
 mod light;
-mod material;
 mod mesh;
 mod projection;
 pub mod shapes;
 mod texture;
 
 pub use camera::{Camera, Projected};
-pub use drawables::{CornersError, PerspectiveImage, ShadedTriangle};
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
-pub use material::{Material, Textured};
 pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError, Vertex};
 pub(crate) use projection::{Projection, Viewport};

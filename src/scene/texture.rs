@@ -37,7 +37,7 @@ pub struct Texture<'a> {
     log2_width: u8,
     log2_height: u8,
     wrap: Wrap,
-    /// For packed coordinates, see [`Texels`](crate::pipeline::Texels).
+    /// For packed coordinates, see the shaders of [`Material`](crate::Material).
     mask: u32,
     multiplier: u32,
 }

@@ -1,0 +1,184 @@
+//! Only what changed: on a serial display the bus is slower than the chip.
+
+use super::display_list::DisplayList;
+use crate::frame::{Background, Band, DepthFormat, PixelFormat};
+use crate::raster::Window;
+use crate::shade::Shader;
+use embedded_graphics::geometry::{Point, Size};
+use embedded_graphics::primitives::Rectangle;
+
+/// What the last frame drew to, for [`DisplayList::render_changed`]: 8 bytes for each of `BANDS` bands.
+///
+/// A display keeps what it was sent. Where neither this frame nor the last has a triangle it shows the background, and keeps on
+/// showing it: only the rest is drawn and sent. That is exact as long as all else stays the same. If the background changes, call
+/// [`Changes::everything`], as after anything else that was sent to the display; if what you draw on top does, [`Changes::mark`] where it was and where it is.
+#[derive(Clone, Debug)]
+pub struct Changes<const BANDS: usize> {
+    /// What the last frame drew to.
+    last: [Extent; BANDS],
+    /// What is to be sent anyhow.
+    marked: Extent,
+    /// Width and height of bands, and the height of the screen.
+    shape: (Size, u32),
+}
+
+/// How much of a screen [`DisplayList::render_changed`] drew and flushed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flushed {
+    /// Bands that were drawn.
+    pub bands: u32,
+    /// Bands of the screen.
+    pub all_bands: u32,
+    /// Pixels in the areas that were flushed.
+    pub pixels: u32,
+    /// Pixels of the screen.
+    pub all_pixels: u32,
+}
+
+/// A rectangle of pixels; empty unless both ends lie behind both starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Extent {
+    left: i16,
+    right: i16,
+    top: i16,
+    bottom: i16,
+}
+
+const _: () = assert!(size_of::<Extent>() == 8);
+
+impl Extent {
+    pub(crate) const NONE: Self = Self { left: i16::MAX, right: 0, top: i16::MAX, bottom: 0 };
+    const ALL: Self = Self { left: 0, right: i16::MAX, top: 0, bottom: i16::MAX };
+
+    /// From columns and rows, both with the one behind the last, that fit.
+    pub(crate) fn new(bounds: [[i32; 2]; 2]) -> Self {
+        let [[left, right], [top, bottom]] = bounds.map(|ends| ends.map(|end| end as i16));
+        Self { left, right, top, bottom }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.left >= self.right || self.top >= self.bottom
+    }
+
+    pub(crate) fn union(self, other: Self) -> Self {
+        if self.is_empty() {
+            return other;
+        }
+        if other.is_empty() {
+            return self;
+        }
+        Self {
+            left: self.left.min(other.left),
+            right: self.right.max(other.right),
+            top: self.top.min(other.top),
+            bottom: self.bottom.max(other.bottom),
+        }
+    }
+
+    pub(crate) fn within(self, window: &Window) -> Self {
+        Self {
+            left: self.left.max(window.columns.start as i16),
+            right: self.right.min(window.columns.end as i16),
+            top: self.top.max(window.rows.start as i16),
+            bottom: self.bottom.min(window.rows.end as i16),
+        }
+    }
+
+    fn rectangle(&self) -> Rectangle {
+        let side = |start: i16, end: i16| (end - start).max(0) as u32;
+        Rectangle::new(
+            Point::new(self.left.into(), self.top.into()),
+            Size::new(side(self.left, self.right), side(self.top, self.bottom)),
+        )
+    }
+}
+
+impl<const BANDS: usize> Changes<BANDS> {
+    /// Before the first frame: everything is to be sent.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { last: [Extent::NONE; BANDS], marked: Extent::ALL, shape: (Size::zero(), 0) }
+    }
+
+    /// The next frame is drawn and sent whole.
+    pub const fn everything(&mut self) {
+        self.marked = Extent::ALL;
+    }
+
+    /// An area of the screen is sent with the next frame, whatever is drawn there. Of several areas all that the smallest rectangle
+    /// around them holds.
+    pub fn mark(&mut self, area: &Rectangle) {
+        let side = |start: i32, length: u32| {
+            let end = (i64::from(start) + i64::from(length)).clamp(0, i16::MAX.into());
+            (start.clamp(0, i16::MAX.into()) as i16, end as i16)
+        };
+        let (left, right) = side(area.top_left.x, area.size.width);
+        let (top, bottom) = side(area.top_left.y, area.size.height);
+        self.marked = self.marked.union(Extent { left, right, top, bottom });
+    }
+}
+
+impl<const BANDS: usize> Default for Changes<BANDS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'a, const V: usize, const T: usize, const D: usize, S, F> DisplayList<'a, V, T, D, S, F>
+where
+    S: Shader<F>,
+    F: PixelFormat,
+{
+    /// As [`DisplayList::render_bands`], without what is on the display already: bands in which nothing changed are skipped, and
+    /// `flush` is given the rectangle of each other that did, which [`Band::colors_in`] and [`Band::rows_in`] give out.
+    ///
+    /// Bands beyond the first `BANDS` are drawn and flushed whole.
+    ///
+    /// # Errors
+    ///
+    /// The first of `flush`. The rest is not drawn then; the next frame will send it.
+    pub fn render_changed<'b, const BANDS: usize, Z: DepthFormat, E>(
+        &self,
+        height: u32,
+        background: &impl Background<F>,
+        band: &mut Band<'b, F, Z>,
+        changes: &mut Changes<BANDS>,
+        mut flush: impl FnMut(Rectangle, &mut Band<'b, F, Z>) -> Result<(), E>,
+    ) -> Result<Flushed, E> {
+        let shape = (band.size(), height);
+        if changes.shape != shape {
+            changes.shape = shape;
+            changes.everything();
+        }
+        let (mut flushed, mut top, mut number) = (Flushed::default(), 0, 0);
+        while band.move_to_part(top, height) {
+            let window = band.window();
+            let size = band.size();
+            let drawn = self.extent(&window);
+            let last = changes.last.get_mut(number);
+            let changed = last.as_deref().copied().unwrap_or(Extent::ALL);
+            let changed = changed.union(drawn).union(changes.marked.within(&window)).within(&window);
+            flushed.all_bands += 1;
+            flushed.all_pixels += size.width * size.height;
+            let area = changed.rectangle();
+            if !changed.is_empty() {
+                flushed.bands += 1;
+                flushed.pixels += area.size.width * area.size.height;
+                band.clear_to(background);
+                self.render(top, band);
+                if let Err(error) = flush(area, band) {
+                    changes.everything();
+                    band.all_rows();
+                    return Err(error);
+                }
+            }
+            if let Some(last) = last {
+                *last = drawn;
+            }
+            top += size.height;
+            number += 1;
+        }
+        changes.marked = Extent::NONE;
+        Ok(flushed)
+    }
+}

@@ -1,0 +1,380 @@
+//! Stages 1 and 2 for later: meshes become the screen vertices and triangles of a display list.
+
+use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
+use crate::frame::PixelFormat;
+use crate::geometry::{Clip, Coloring, Count, MOST_CORNERS, ScreenVertex, ToClip, dim};
+use crate::math::Pose;
+use crate::num::{I16F16, U1F31, U8F8};
+use crate::raster::{Cull, Window, area, in_order};
+use crate::scene::{Mesh, Projection};
+use crate::shade::{Inputs, Shader};
+use heapless::VecView;
+
+/// Which capacity is full.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Full {
+    Vertices,
+    Triangles,
+}
+
+/// What a shader wants of the vertices.
+pub(crate) struct Style {
+    cull: Cull,
+    pub(crate) inputs: Inputs,
+    coloring: Coloring,
+}
+
+impl Style {
+    /// Not inlined: what it takes is not on the stack while a mesh is recorded.
+    #[inline(never)]
+    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Self {
+        Self { cull: shader.cull(), inputs: shader.inputs(), coloring: shader.coloring(pose) }
+    }
+
+    fn has_color(&self) -> bool {
+        matches!(self.inputs, Inputs::Color | Inputs::UvColor)
+    }
+}
+
+/// Adds one mesh to a list.
+///
+/// Each vertex of the mesh has its slot at first: that is what makes a vertex transformed once and found at once. At the end
+/// those of no triangle that is drawn are given back, and the others move together.
+struct Recorder<'l, 'm> {
+    vertices: &'l mut VecView<ListVertex>,
+    triangles: &'l mut VecView<ListTriangle>,
+    mesh: &'l Mesh<'m>,
+    to_clip: ToClip,
+    clip: Clip,
+    style: &'l Style,
+    window: Window,
+    /// The slot of the mesh's vertex 0, or what would be it, wrapping.
+    to_slot: usize,
+    /// The mesh's slots.
+    own: core::ops::Range<usize>,
+    is_any_cut_off: bool,
+    /// The slot that the next vertex will have that is kept.
+    next: u16,
+}
+
+/// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error. Returns whether all its colours are
+/// grey.
+pub(crate) fn record(
+    vertices: &mut VecView<ListVertex>,
+    triangles: &mut VecView<ListTriangle>,
+    mesh: &Mesh<'_>,
+    [camera, pose]: [&Pose; 2],
+    projection: &Projection,
+    style: &Style,
+    stats: &mut impl Count,
+) -> Result<bool, Full> {
+    stats.count(|stats| &mut stats.meshes);
+    let window = Window::LARGEST.within(&projection.viewport);
+    let to_clip = ToClip::new(projection, camera, pose);
+    let clip = Clip::new(projection, to_clip.unit_bits());
+    if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
+        stats.count(|stats| &mut stats.meshes_out_of_sight);
+        return Ok(true);
+    }
+    let (start, most) = (vertices.len(), vertices.capacity().min(MOST_SLOTS));
+    let Some([first, last]) = named(mesh, most - start) else {
+        return Ok(true);
+    };
+    let count = usize::from(last - first) + 1;
+    if start + count > most {
+        return Err(Full::Vertices);
+    }
+    let to_slot = start.wrapping_sub(first.into());
+    let own = start..start + count;
+    let first_triangle = triangles.len();
+    let mut recorder = Recorder {
+        vertices,
+        triangles,
+        mesh,
+        to_clip,
+        clip,
+        style,
+        window,
+        to_slot,
+        own,
+        is_any_cut_off: false,
+        next: start as u16,
+    };
+    recorder.place(first, stats);
+    recorder.add_triangles(stats)?;
+    Ok(recorder.move_together(first, first_triangle))
+}
+
+/// The first and the last vertex that are given slots, of which there are `most`: of a part of a mesh no more than it names.
+///
+/// Where there are as many triangles as vertices it is none, most likely, and all vertices have slots if these are enough: to look
+/// at all triangles takes as long as to transform a tenth of the vertices.
+#[inline(never)]
+fn named(mesh: &Mesh<'_>, most: usize) -> Option<[u16; 2]> {
+    let count = mesh.vertices().len();
+    if count <= mesh.triangles().len() && count <= most {
+        return count.checked_sub(1).map(|last| [0, last as u16]);
+    }
+    let (first, last) = mesh
+        .triangles()
+        .flatten()
+        .fold((u16::MAX, 0), |(first, last), index| (first.min(index), last.max(index)));
+    (first <= last).then_some([first, last])
+}
+
+impl Recorder<'_, '_> {
+    /// Every vertex that the mesh names goes to its slot. There is room.
+    #[inline(never)]
+    fn place(&mut self, first: u16, stats: &mut impl Count) {
+        let _ = self.vertices.resize_default(self.own.end);
+        let slots = self.vertices.get_mut(self.own.clone()).unwrap_or_default();
+        let of_mesh = self.mesh.vertices().get(usize::from(first)..).unwrap_or_default();
+        for (slot, vertex) in slots.iter_mut().zip(of_mesh) {
+            stats.count(|stats| &mut stats.transformed);
+            if !self.clip.locate(&self.to_clip, vertex, (&mut slot.x, &mut slot.y, &mut slot.q)) {
+                slot.x = CUT_OFF;
+                self.is_any_cut_off = true;
+            }
+        }
+    }
+
+    #[inline]
+    fn at(&self, index: u16) -> [i32; 2] {
+        let slot = usize::from(index).wrapping_add(self.to_slot);
+        self.vertices.get(slot).map_or([0; 2], ListVertex::position)
+    }
+
+    #[inline(never)]
+    fn add_triangles(&mut self, stats: &mut impl Count) -> Result<(), Full> {
+        let is_faceted = self.style.coloring.is_faceted();
+        let cut_off = i32::from(CUT_OFF.to_bits());
+        let mesh = self.mesh;
+        for indices in mesh.triangles() {
+            stats.count(|stats| &mut stats.triangles);
+            let [a, b, c] = indices.map(|index| self.at(index));
+            if self.is_any_cut_off && (a[0] == cut_off || b[0] == cut_off || c[0] == cut_off) {
+                self.add_cut(indices, stats)?;
+                continue;
+            }
+            let area = area([a, b, c]);
+            if self.style.cull.leaves_out(area) {
+                stats.count(|stats| &mut stats.culled);
+                continue;
+            }
+            let Some(rows) = self.rows_if_seen([a, b, c], stats) else {
+                continue;
+            };
+            if is_faceted {
+                self.add_faceted(indices, area, rows)?;
+            } else {
+                let corners = indices.map(|index| self.keep(index));
+                self.add(corners, area, rows)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of a triangle if it is not out of the viewport, in steps of the index.
+    #[inline]
+    fn rows_if_seen(&self, [a, b, c]: [[i32; 2]; 3], stats: &mut impl Count) -> Option<[u8; 2]> {
+        let within = |axis: usize, range: &core::ops::Range<i32>| {
+            let [start, end] = Window::centers(a[axis], b[axis], c[axis]);
+            (start.max(range.start), end.min(range.end))
+        };
+        let (left, right) = within(0, &self.window.columns);
+        let (top, bottom) = within(1, &self.window.rows);
+        if left >= right || top >= bottom {
+            stats.count(|stats| &mut stats.out_of_sight);
+            return None;
+        }
+        stats.count(|stats| &mut stats.drawn);
+        Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
+    }
+
+    /// From slots and q, in the order in which set-up takes its corners, which is found once for all bands.
+    #[inline(always)]
+    fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+        let corners = in_order(corners, area, |(_, q)| q.to_bits()).map(|(slot, _)| slot);
+        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
+    }
+
+    /// The slot that a vertex will have, and q. It is lit when it turns out that it is seen.
+    #[inline]
+    fn keep(&mut self, index: u16) -> (u16, U1F31) {
+        let slot = usize::from(index).wrapping_add(self.to_slot);
+        let Some(vertex) = self.vertices.get_mut(slot) else {
+            return (0, U1F31::ZERO);
+        };
+        let q = vertex.q;
+        if q & KEPT != U1F31::ZERO {
+            return (vertex.attributes[3], q & !KEPT);
+        }
+        let next = self.next;
+        (vertex.q, self.next) = (q | KEPT, next + 1);
+        if self.style.has_color() {
+            let mut color = [U8F8::ZERO; 3];
+            self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
+            let [red, green, blue] = color.map(U8F8::to_bits);
+            vertex.attributes = [red, green, blue, next];
+        } else {
+            vertex.attributes[3] = next;
+        }
+        (next, q)
+    }
+
+    /// With the light of its face: corners of its own.
+    #[inline(never)]
+    fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+        let mut corners = [(0, U1F31::ZERO); 3];
+        let light = self.style.coloring.on_face(indices.map(|index| self.mesh.vertex(index)));
+        for (corner, index) in corners.iter_mut().zip(indices) {
+            let slot = usize::from(index).wrapping_add(self.to_slot);
+            let of_mesh = self.mesh.vertex(index);
+            let mut vertex = ScreenVertex::default();
+            if let Some(at) = self.vertices.get(slot) {
+                (vertex.x, vertex.y, vertex.q) = (at.x, at.y, at.q);
+            }
+            [vertex.u, vertex.v] = of_mesh.uv.map(I16F16::from);
+            self.style.coloring.of_vertex(of_mesh, &mut vertex.color);
+            if let Some(light) = light {
+                dim(&mut vertex.color, light);
+            }
+            *corner = (self.push(&vertex)?, vertex.q);
+        }
+        self.add(corners, area, rows)
+    }
+
+    /// The pieces of a triangle that has to be cut, as a fan.
+    #[cold]
+    #[inline(never)]
+    fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) -> Result<(), Full> {
+        stats.count(|stats| &mut stats.clipped);
+        let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
+        let corners = indices.map(|index| self.mesh.vertex(index));
+        let Some(count) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon) else {
+            stats.count(|stats| &mut stats.rejected);
+            return Ok(());
+        };
+        if let Some(light) = self.style.coloring.on_face(corners) {
+            polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
+        }
+        let mut slots = [None; MOST_CORNERS];
+        for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
+            let fan = [0, piece, piece + 1];
+            let position = |i: usize| [polygon[i].x, polygon[i].y].map(|at| i32::from(at.to_bits()));
+            let area = area(fan.map(position));
+            if self.style.cull.leaves_out(area) {
+                stats.count(|stats| &mut stats.culled);
+                continue;
+            }
+            let Some(rows) = self.rows_if_seen(fan.map(position), stats) else {
+                continue;
+            };
+            let mut corners = [0; 3];
+            for (corner, i) in corners.iter_mut().zip(fan) {
+                *corner = match slots[i] {
+                    Some(slot) => slot,
+                    None => self.push(&polygon[i])?,
+                };
+                slots[i] = Some(*corner);
+            }
+            let [a, b, c] = [0, 1, 2].map(|i| (corners[i], polygon[fan[i]].q));
+            self.add([a, b, c], area, rows)?;
+        }
+        Ok(())
+    }
+
+    /// A corner that no vertex of the mesh stands for: its slot, until [`Recorder::move_together`].
+    fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
+        let slot = self.vertices.len();
+        let uv = ListVertex::attributes_of([at.u, at.v]);
+        let [red, green, blue] = at.color.map(U8F8::to_bits);
+        let vertex = ListVertex::new(at);
+        match self.style.inputs {
+            Inputs::Uv => self.push_slot(ListVertex { attributes: uv, ..vertex })?,
+            inputs => self.push_slot(ListVertex {
+                attributes: [red, green, blue, if inputs == Inputs::UvColor { IN_NEXT } else { 0 }],
+                ..vertex
+            })?,
+        }
+        if self.style.inputs == Inputs::UvColor {
+            self.push_slot(ListVertex { x: CUT_OFF, attributes: uv, ..ListVertex::default() })?;
+        }
+        Ok(slot as u16)
+    }
+
+    fn push_slot(&mut self, slot: ListVertex) -> Result<(), Full> {
+        if self.vertices.len() >= MOST_SLOTS {
+            return Err(Full::Vertices);
+        }
+        self.vertices.push(slot).map_err(|_| Full::Vertices)
+    }
+
+    /// Gives back the slots of vertices that are not seen, and completes the others. Returns whether all colours are grey.
+    #[inline(never)]
+    fn move_together(self, first: u16, first_triangle: usize) -> bool {
+        let Self { vertices, triangles, mesh, style, own, next, .. } = self;
+        let mut all_gray = style.has_color();
+        for hole in own.clone() {
+            let Some(place) = vertices.get_mut(hole) else {
+                break;
+            };
+            if place.q & KEPT == U1F31::ZERO {
+                continue;
+            }
+            let mut vertex = *place;
+            place.q &= !KEPT;
+            // Each goes where it belongs, and takes the place of one that goes on.
+            let mut from = hole;
+            while vertex.q & KEPT != U1F31::ZERO {
+                let to = usize::from(vertex.attributes[3]);
+                all_gray &= vertex.is_gray();
+                let index = first + (from - own.start) as u16;
+                if style.inputs == Inputs::Uv {
+                    vertex.attributes = ListVertex::attributes_of(mesh.vertex(index).uv.map(I16F16::from));
+                } else {
+                    vertex.attributes[3] = index;
+                }
+                vertex.q &= !KEPT;
+                let Some(place) = vertices.get_mut(to) else {
+                    break;
+                };
+                vertex = core::mem::replace(place, vertex);
+                from = to;
+            }
+        }
+        let freed = own.end - usize::from(next);
+        if vertices.len() > own.end {
+            all_gray &= Self::move_down(vertices, own.end, freed);
+            for corner in triangles
+                .get_mut(first_triangle..)
+                .unwrap_or_default()
+                .iter_mut()
+                .flat_map(|t| &mut t.corners)
+            {
+                if usize::from(*corner) >= own.end {
+                    *corner -= freed as u16;
+                }
+            }
+        }
+        vertices.truncate(vertices.len() - freed);
+        all_gray
+    }
+
+    /// Moves the slots from `start` on that far down. Returns whether all colours are grey.
+    #[cold]
+    #[inline(never)]
+    fn move_down(vertices: &mut VecView<ListVertex>, start: usize, by: usize) -> bool {
+        let mut all_gray = true;
+        for from in start..vertices.len() {
+            let Some(&vertex) = vertices.get(from) else {
+                break;
+            };
+            all_gray &= vertex.is_gray() || vertex.x == CUT_OFF;
+            if let Some(place) = vertices.get_mut(from - by) {
+                *place = vertex;
+            }
+        }
+        all_gray
+    }
+}

@@ -1,0 +1,367 @@
+//! A band: some rows of the screen, or all of them.
+
+use super::background::Background;
+use super::depth::DepthFormat;
+use super::format::PixelFormat;
+use crate::num::U1F31;
+use crate::raster::{Rows, Run, Span, TriangleSetup, Window};
+use crate::shade::{Patch, Shader};
+use core::fmt;
+use core::ops::Range;
+use embedded_graphics::geometry::Size;
+
+/// A strip of rows of a screen, or the whole screen, in memory that the user owns.
+///
+/// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen: what lies
+/// outside its rows is left out. Its contents are as they were given: clear them first. To send
+/// one band by DMA while another is drawn, see [`Band::swap_pixels`].
+///
+/// ```
+/// use fixel::{Band, Depth16};
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
+/// let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?.starting_at(32);
+/// band.clear_depth();
+/// let Ok(()) = band.clear(Rgb565::BLUE);
+/// assert_eq!(band.bounding_box().top_left, Point::new(0, 32));
+/// # Ok::<(), fixel::TargetError>(())
+/// ```
+pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
+    /// Rows one after another, width · `rows` words.
+    pub(crate) pixels: &'a mut [F::Word],
+    /// Likewise.
+    depth: &'a mut [D::Word],
+    pub(crate) width: u16,
+    /// How many rows there is memory for.
+    rows: u16,
+    /// How many of them it has: all, but at the bottom of a screen.
+    height: u16,
+    /// The screen row of the first row.
+    pub(crate) top: u16,
+}
+
+/// The longest side of a target: what a guard band that fits `i32` edge functions leaves room for.
+const MAX_SIDE: u32 = 1023;
+
+impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
+    /// A band of `size` pixels in the first width × height words of the two slices.
+    ///
+    /// [`NoDepth`](super::NoDepth) takes any slice of `()`: `&mut []`.
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError`] if a side is longer than 1023 or a slice too short.
+    pub fn new(size: Size, pixels: &'a mut [F::Word], depth: &'a mut [D::Word]) -> Result<Self, TargetError> {
+        if size.width > MAX_SIDE || size.height > MAX_SIDE {
+            return Err(TargetError::TooLarge);
+        }
+        let needed = (size.width * size.height) as usize;
+        let found = pixels.len();
+        let pixels = pixels.get_mut(..needed).ok_or(TargetError::Pixels { needed, found })?;
+        let found = depth.len();
+        // Depth that is never tested is never looked at.
+        let needed = if D::ALWAYS_PASSES { needed.min(found) } else { needed };
+        let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
+        let (width, rows) = (size.width as u16, size.height as u16);
+        Ok(Self { pixels, depth, width, rows, height: rows, top: 0 })
+    }
+
+    /// The same memory as the rows from `row` on of a taller screen (at most 1023).
+    #[must_use]
+    pub fn starting_at(mut self, row: u32) -> Self {
+        self.move_to(row);
+        self
+    }
+
+    /// Makes this the band of the rows from `row` on (at most 1023); the contents stay.
+    pub fn move_to(&mut self, row: u32) {
+        self.top = row.min(MAX_SIDE) as u16;
+    }
+
+    /// Width and height in pixels.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        Size::new(self.width as u32, self.height as u32)
+    }
+
+    /// Forgets all depths, so that whatever is drawn next is seen.
+    pub fn clear_depth(&mut self) {
+        D::clear(self.depth);
+    }
+
+    /// The pixels' words, row after row.
+    #[must_use]
+    pub fn pixels(&self) -> &[F::Word] {
+        self.pixels.get(..self.len()).unwrap_or_default()
+    }
+
+    /// How many pixels it has.
+    fn len(&self) -> usize {
+        usize::from(self.width) * usize::from(self.height)
+    }
+
+    /// The depths, row after row; without depth what [`Band::new`] was given.
+    #[must_use]
+    pub fn depth(&self) -> &[D::Word] {
+        self.depth.get(..self.len()).unwrap_or(self.depth)
+    }
+
+    /// The pixels' colours, row after row, for
+    /// [`fill_contiguous`](embedded_graphics::draw_target::DrawTarget::fill_contiguous) of a display.
+    #[must_use]
+    pub fn colors(&self) -> impl ExactSizeIterator<Item = F::Color> {
+        self.pixels().iter().map(|&word| F::decode(word))
+    }
+
+    /// The pixels' bytes as they stand in memory, for a display's bus.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8]
+    where
+        F::Word: bytemuck::NoUninit,
+    {
+        bytemuck::must_cast_slice(self.pixels())
+    }
+
+    /// Shows nothing but a background, and forgets all depths.
+    pub fn clear_to(&mut self, background: &impl Background<F>) {
+        let top = u32::from(self.top);
+        let mut rest = &mut *self.pixels;
+        // `chunks_exact_mut` would divide.
+        for y in top..top + u32::from(self.height) {
+            let Some((row, others)) = rest.split_at_mut_checked(self.width.into()) else {
+                break;
+            };
+            background.fill_row(y, row);
+            rest = others;
+        }
+        self.clear_depth();
+    }
+
+    /// Makes this the rows from `top` on of a screen of `height` rows, as many as there is memory for and the screen has. If that is
+    /// none, it returns `false`, and has all its rows again.
+    pub(crate) fn move_to_part(&mut self, top: u32, height: u32) -> bool {
+        let rows = height.min(MAX_SIDE).saturating_sub(top).min(self.rows.into());
+        self.move_to(top);
+        self.height = if rows > 0 { rows as u16 } else { self.rows };
+        rows > 0
+    }
+
+    /// Ends what [`Band::move_to_part`] began.
+    pub(crate) fn all_rows(&mut self) {
+        self.height = self.rows;
+    }
+
+    /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
+    /// anew. The depth stays; [`Band::clear_to`] clears it.
+    ///
+    /// A band of static memory gives and takes `&'static mut [u16]`, which a channel may own until it is done. As bytes in
+    /// [`BigEndian`](super::BigEndian) order they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
+    /// A channel that moves words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
+    ///
+    /// ```
+    /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+    /// use fixel::{Band, BigEndian, NoDepth};
+    /// # let memory = || &mut *Box::leak(Box::new([0; 240 * 16]));
+    /// # let (one, other) = (memory(), memory());
+    /// let mut free: &'static mut [u16] = other; // from a `StaticCell`, say, as is `one`
+    /// let mut band = Band::<BigEndian<Rgb565>, NoDepth>::new(Size::new(240, 16), one, &mut [])?;
+    /// let Ok(()) = band.clear(Rgb565::RED);
+    /// band.swap_pixels(&mut free)?;
+    /// let bytes: &'static mut [u8] = bytemuck::cast_slice_mut(free); // for the channel
+    /// assert_eq!(bytes[..4], [0xf8, 0x00, 0xf8, 0x00]);
+    /// # Ok::<(), fixel::TargetError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`TargetError::Pixels`] if there are fewer words than the band has pixels; nothing has changed then. Of more the band
+    /// keeps, and later gives away, only as many.
+    pub fn swap_pixels(&mut self, pixels: &mut &'a mut [F::Word]) -> Result<(), TargetError> {
+        let (needed, found) = (self.pixels.len(), pixels.len());
+        if found < needed {
+            return Err(TargetError::Pixels { needed, found });
+        }
+        let (others, _) = core::mem::take(pixels).split_at_mut(needed);
+        *pixels = core::mem::replace(&mut self.pixels, others);
+        Ok(())
+    }
+
+    /// The memory, for the next use: the pixels of a static band go to a DMA channel as they came.
+    #[must_use]
+    pub fn into_slices(self) -> (&'a mut [F::Word], &'a mut [D::Word]) {
+        (self.pixels, self.depth)
+    }
+
+    /// The part of the screen that it holds.
+    pub(crate) fn window(&self) -> Window {
+        let top = i32::from(self.top);
+        Window { columns: 0..i32::from(self.width), rows: top..top + i32::from(self.height) }
+    }
+
+    /// Draws what a triangle covers of a window of this band.
+    pub(crate) fn draw<S: Shader<F>>(
+        &mut self,
+        setup: &TriangleSetup,
+        rows: &mut Rows,
+        window: &Window,
+        shader: &S,
+    ) {
+        let (top, width) = (i32::from(self.top), usize::from(self.width));
+        if Patch::<F::Word, D>::takes(setup, rows) {
+            let (pixels, depth) = (&mut *self.pixels, &mut *self.depth);
+            let first = (rows.row() - top) as usize * width;
+            return shader.paint(Patch::<F::Word, D> { setup, rows, first, width, pixels, depth });
+        }
+        rows.each(window, |y, start, end| {
+            let row = (y - top) as usize * width;
+            let (first, end) = (row + start as usize, row + end as usize);
+            let mut span = Span::new(setup, start, y);
+            if D::ALWAYS_PASSES {
+                if let Some(pixels) = self.pixels.get_mut(first..end) {
+                    shader.paint(Run { span, pixels });
+                }
+                return;
+            }
+            let Some(mut depth) = self.depth.get_mut(first..end) else {
+                return;
+            };
+            let (mut near_w, step) = span.depth();
+            let mut first = first;
+            loop {
+                let (run, tested) = visible::<D>(depth, near_w, step);
+                if let Some(pixels) = self.pixels.get_mut(first + run.start..first + run.end)
+                    && !pixels.is_empty()
+                {
+                    shade(shader, Run { span: span.ahead(run.start), pixels });
+                }
+                depth = depth.get_mut(tested..).unwrap_or_default();
+                if depth.is_empty() {
+                    return;
+                }
+                first += tested;
+                near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
+                span = span.ahead(tested);
+            }
+        });
+    }
+}
+
+/// Tests depth up to the first pixel that fails behind one that passes; returns the run of those that pass, and how many were
+/// tested.
+#[inline(never)]
+fn visible<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> (Range<usize>, usize) {
+    let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
+    // It is linear in between.
+    let [start, end] = if near_w.min(last) >> 15 != 0 {
+        first_run(depth, near_w, step, D::test_small)
+    } else {
+        first_run_far_away::<D>(depth, near_w, step)
+    };
+    (start..end, (end + 1).min(depth.len()))
+}
+
+#[cold]
+#[inline(never)]
+fn first_run_far_away<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> [usize; 2] {
+    first_run(depth, near_w, step, D::test)
+}
+
+/// One loop looks for a pixel that passes and one for a pixel that does not: they know nothing of colours, and colours nothing
+/// of depth.
+#[inline(always)]
+fn first_run<W>(
+    depth: &mut [W],
+    mut near_w: u32,
+    step: i32,
+    test: impl Fn(&mut W, U1F31) -> bool,
+) -> [usize; 2] {
+    let mut start = 0;
+    for stored in &mut *depth {
+        let passes = test(stored, U1F31::from_bits(near_w));
+        near_w = near_w.wrapping_add_signed(step);
+        if passes {
+            break;
+        }
+        start += 1;
+    }
+    let behind = depth.get_mut(start + 1..).unwrap_or_default();
+    let passed = passing(behind, near_w, step, test);
+    [start, (start + 1 + passed).min(depth.len())]
+}
+
+/// How many pixels pass up to the first that does not. Out of line on Armv6-M, where it needs all registers: 8 cycles a pixel, not 14.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W, U1F31) -> bool) -> usize {
+    let mut passes = |stored: &mut W, step: i32| {
+        let passes = test(stored, U1F31::from_bits(near_w));
+        near_w = near_w.wrapping_add_signed(step);
+        passes
+    };
+    let (blocks, rest) = depth.as_chunks_mut::<8>();
+    let tested = 8 * blocks.len();
+    for (n, block) in blocks.iter_mut().enumerate() {
+        // Unknown, so that not all of its multiples are kept in memory.
+        let step = core::hint::black_box(step);
+        for (i, stored) in block.iter_mut().enumerate() {
+            if !passes(stored, step) {
+                return 8 * n + i;
+            }
+        }
+    }
+    tested + rest.iter_mut().position(|stored| !passes(stored, step)).unwrap_or(rest.len())
+}
+
+/// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, run: Run<'_, F::Word>) {
+    shader.paint(run);
+}
+
+impl<F: PixelFormat, D: DepthFormat> fmt::Debug for Band<'_, F, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Band")
+            .field("width", &self.width)
+            .field("height", &self.height)
+            .field("top", &self.top)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What is wrong with a target's size or memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetError {
+    /// A side is longer than 1023 pixels.
+    TooLarge,
+    /// There are too few pixel words.
+    Pixels {
+        /// Width × height.
+        needed: usize,
+        /// The words given.
+        found: usize,
+    },
+    /// There are too few depth words.
+    Depth {
+        /// Width × height.
+        needed: usize,
+        /// The words given.
+        found: usize,
+    },
+}
+
+impl fmt::Display for TargetError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge => write!(f, "a side of a target is at most 1023 pixels"),
+            Self::Pixels { needed, found } => {
+                write!(f, "the target needs {needed} pixels, but {found} were given")
+            }
+            Self::Depth { needed, found } => {
+                write!(f, "the target needs {needed} depths, but {found} were given")
+            }
+        }
+    }
+}
+
+impl core::error::Error for TargetError {}

@@ -1,0 +1,125 @@
+//! A band as embedded-graphics sees it: a target to draw 2D on, and pixels to read.
+
+use super::band::Band;
+use super::depth::DepthFormat;
+use super::format::PixelFormat;
+use crate::raster::Window;
+use core::convert::Infallible;
+use core::ops::Range;
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Dimensions, Point};
+use embedded_graphics::image::GetPixel;
+use embedded_graphics::primitives::Rectangle;
+
+impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
+    /// The colours of an area of the screen, row after row, as far as it lies in the band.
+    pub fn colors_in(&self, area: &Rectangle) -> impl Iterator<Item = F::Color> {
+        self.rows_in(area).flatten().map(|&word| F::decode(word))
+    }
+
+    /// The rows of an area of the screen, as far as it lies in the band.
+    pub fn rows_in(&self, area: &Rectangle) -> impl Iterator<Item = &[F::Word]> {
+        let (columns, rows) = self.within(area).unwrap_or((0..0, 0..0));
+        rows.map(move |y| {
+            let row = (y - i32::from(self.top)) as usize * usize::from(self.width);
+            self.pixels.get(row + columns.start as usize..row + columns.end as usize).unwrap_or_default()
+        })
+    }
+
+    /// The columns and rows of an area that lie in the band. (`Rectangle::intersection` overflows on areas at the ends
+    /// of the coordinates.)
+    fn within(&self, area: &Rectangle) -> Option<(Range<i32>, Range<i32>)> {
+        let overlap = |start: i32, length: u32, band: Range<i32>| {
+            let end = (i64::from(start) + i64::from(length)).min(i64::from(band.end)) as i32;
+            let start = start.max(band.start);
+            (start < end).then_some(start..end)
+        };
+        let Window { columns, rows } = self.window();
+        let columns = overlap(area.top_left.x, area.size.width, columns)?;
+        Some((columns, overlap(area.top_left.y, area.size.height, rows)?))
+    }
+
+    /// The words of the part of a row (of the screen) from column `x` on, `width` long; the
+    /// rectangle that they come from lies inside.
+    fn row_mut(&mut self, x: i32, y: i32, width: u32) -> &mut [F::Word] {
+        let start = (y - i32::from(self.top)) as usize * usize::from(self.width) + x as usize;
+        self.pixels.get_mut(start..start + width as usize).unwrap_or_default()
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> Dimensions for Band<'_, F, D> {
+    fn bounding_box(&self) -> Rectangle {
+        Rectangle::new(Point::new(0, self.top.into()), self.size())
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> DrawTarget for Band<'_, F, D> {
+    type Color = F::Color;
+    type Error = Infallible;
+
+    fn draw_iter<I>(&mut self, pixels: I) -> Result<(), Infallible>
+    where
+        I: IntoIterator<Item = Pixel<F::Color>>,
+    {
+        let area = self.bounding_box();
+        for Pixel(point, color) in pixels {
+            if area.contains(point) {
+                self.row_mut(point.x, point.y, 1).fill(F::encode(color));
+            }
+        }
+        Ok(())
+    }
+
+    fn fill_contiguous<I>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible>
+    where
+        I: IntoIterator<Item = F::Color>,
+    {
+        let mut colors = colors.into_iter();
+        let Some((columns, rows)) = self.within(area) else {
+            return Ok(());
+        };
+        let inside = (columns.end - columns.start) as u32;
+        let width = area.size.width as usize;
+        // What the area has left and above; then for each row what it has right and, of the next, left.
+        let before = columns.start.wrapping_sub(area.top_left.x) as u32 as usize;
+        let above = rows.start.wrapping_sub(area.top_left.y) as u32 as usize;
+        let mut gap = above.saturating_mul(width).saturating_add(before);
+        for y in rows {
+            if gap > 0 && colors.nth(gap - 1).is_none() {
+                return Ok(());
+            }
+            for (word, color) in self.row_mut(columns.start, y, inside).iter_mut().zip(&mut colors) {
+                *word = F::encode(color);
+            }
+            gap = width - inside as usize;
+        }
+        Ok(())
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, color: F::Color) -> Result<(), Infallible> {
+        if let Some((columns, rows)) = self.within(area) {
+            for y in rows {
+                self.row_mut(columns.start, y, (columns.end - columns.start) as u32).fill(F::encode(color));
+            }
+        }
+        Ok(())
+    }
+
+    fn clear(&mut self, color: F::Color) -> Result<(), Infallible> {
+        self.pixels.fill(F::encode(color));
+        Ok(())
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> GetPixel for Band<'_, F, D> {
+    type Color = F::Color;
+
+    fn pixel(&self, point: Point) -> Option<F::Color> {
+        if !self.bounding_box().contains(point) {
+            return None;
+        }
+        let index = (point.y as usize - usize::from(self.top)) * usize::from(self.width) + point.x as usize;
+        self.pixels.get(index).map(|&word| F::decode(word))
+    }
+}

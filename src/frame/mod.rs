@@ -1,0 +1,14 @@
+//! Memory of pixels: how a pixel and its depth are stored, the band of rows that is drawn into, and what it is cleared to.
+//!
+//! Nothing here knows what a triangle is.
+
+mod background;
+mod band;
+mod depth;
+mod draw_target;
+mod format;
+
+pub use background::{Background, Gradient, Picture};
+pub use band::{Band, TargetError};
+pub use depth::{Depth16, DepthFormat, NoDepth};
+pub use format::{BigEndian, PixelFormat};

@@ -1,0 +1,213 @@
+//! Stage 5: what a pixel shows. How attributes get to it along a row is in [`walk`](super::walk).
+
+use super::fill::{Each, Fill};
+use crate::frame::PixelFormat;
+use crate::geometry::Coloring;
+use crate::math::Pose;
+use crate::num::I16F16;
+use crate::raster::{Cull, Straight};
+
+/// How exactly perspective is followed between the pixels of a span: [`Exact`], [`QuarterPixel`]
+/// or [`Affine`].
+///
+/// The error is measured in pixels on the screen: the error of an attribute, divided by
+/// its largest change over one pixel step (at least 1 texel or 1/255).
+pub trait Quality: sealed::Sealed {
+    /// Which triangles' attributes count as linear on the screen, without any division.
+    #[doc(hidden)]
+    const STRAIGHT: Straight;
+    /// Whether it takes place at every pixel.
+    #[doc(hidden)]
+    const EVERY_PIXEL: bool;
+}
+
+/// A division at every pixel: an error of at most 0.02 pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Exact;
+
+/// Divisions as far apart as an error of ¼ pixel allows: the default.
+#[derive(Clone, Copy, Debug)]
+pub struct QuarterPixel;
+
+/// No division: attributes are linear on the screen, and textures swim. The error is unbounded.
+#[derive(Clone, Copy, Debug)]
+pub struct Affine;
+
+impl Quality for Exact {
+    const STRAIGHT: Straight = Straight::Below((1 << 16) / 32);
+    const EVERY_PIXEL: bool = true;
+}
+
+impl Quality for QuarterPixel {
+    const STRAIGHT: Straight = Straight::Below((1 << 16) / 4 * 3);
+    const EVERY_PIXEL: bool = false;
+}
+
+impl Quality for Affine {
+    const STRAIGHT: Straight = Straight::Always;
+    const EVERY_PIXEL: bool = false;
+}
+
+pub(crate) mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Exact {}
+    impl Sealed for super::QuarterPixel {}
+    impl Sealed for super::Affine {}
+}
+
+/// Which attributes of the vertices a shader reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inputs {
+    /// None.
+    None,
+    /// u and v.
+    Uv,
+    /// Red, green and blue.
+    Color,
+    /// u, v, red, green and blue.
+    UvColor,
+}
+
+/// The attributes at one pixel centre; those that a shader does not read are 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Varying {
+    /// Texture coordinate to the right, in texels.
+    pub u: I16F16,
+    /// Texture coordinate downwards, in texels.
+    pub v: I16F16,
+    /// Red, green and blue, 0 … 255.996.
+    pub color: [I16F16; 3],
+}
+
+impl Varying {
+    fn new([u, v, red, green, blue]: [i32; 5]) -> Self {
+        Self {
+            u: I16F16::from_bits(u),
+            v: I16F16::from_bits(v),
+            color: [red, green, blue].map(I16F16::from_bits),
+        }
+    }
+}
+
+/// What a pixel shows. [`Material`](crate::Material) is the shader that comes with the crate.
+///
+/// ```
+/// use fixel::{Cull, Inputs, QuarterPixel, Shader, Varying};
+/// use fixel::embedded_graphics::pixelcolor::Rgb565;
+/// /// Rings around the origin of the texture coordinates.
+/// struct Rings;
+/// impl Shader<Rgb565> for Rings {
+///     type Quality = QuarterPixel;
+///     fn inputs(&self) -> Inputs {
+///         Inputs::Uv
+///     }
+///     fn color(&self, at: &Varying) -> u16 {
+///         let (u, v) = (at.u.to_num::<i32>(), at.v.to_num::<i32>());
+///         if (u * u + v * v) & 64 == 0 { 0xffff } else { 0x001f }
+///     }
+/// }
+/// ```
+pub trait Shader<F: PixelFormat> {
+    /// How exactly the attributes follow perspective.
+    type Quality: Quality;
+
+    /// Whether [`Shader::coloring`] may say anything but the default. Without it drawing takes 100 bytes less of the stack.
+    #[doc(hidden)]
+    const LIT: bool = true;
+
+    /// Which attributes [`Shader::color`] reads; the fewer, the faster.
+    fn inputs(&self) -> Inputs;
+
+    /// The pixel word for the attributes at one pixel centre.
+    fn color(&self, varying: &Varying) -> F::Word;
+
+    /// Which side of a triangle [`Camera::draw`](crate::Camera::draw) leaves out.
+    fn cull(&self) -> Cull {
+        Cull::Back
+    }
+
+    /// What colour the vertices of a mesh in this pose have, for shaders that read it: their own, unless lit.
+    fn coloring(&self, pose: &Pose) -> Coloring {
+        let _ = pose;
+        Coloring::default()
+    }
+
+    /// By how much texture coordinates are multiplied, as a power of two: 2⁰ … 2⁸, so that a plane can repeat its
+    /// texture hundreds of times. What goes beyond ±32768 texels starts again at the other end, which no repeated
+    /// texture shows.
+    fn texture_scale(&self) -> u32 {
+        0
+    }
+
+    /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
+    /// ways to colour a pixel may do so here, once for many.
+    fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {
+        let gray = pixels.is_gray();
+        match self.inputs() {
+            Inputs::None => pixels.fill_evenly(self.color(&Varying::default())),
+            Inputs::Uv => {
+                pixels.shade(|[u, v]| self.color(&Varying::new([u, v, 0, 0, 0])));
+            }
+            Inputs::Color if gray => {
+                pixels.shade(|[c]| self.color(&Varying::new([0, 0, c, c, c])));
+            }
+            Inputs::Color => {
+                pixels.shade(|[r, g, b]| self.color(&Varying::new([0, 0, r, g, b])));
+            }
+            Inputs::UvColor if gray => {
+                pixels.shade(|[u, v, c]| self.color(&Varying::new([u, v, c, c, c])));
+            }
+            Inputs::UvColor => {
+                pixels.shade(|all| self.color(&Varying::new(all)));
+            }
+        }
+    }
+}
+
+/// Pixels side by side, or all of a small triangle, for a [`Shader`] of quality `Q` to fill with words `W`: it says once with what.
+///
+/// ```
+/// use fixel::embedded_graphics::pixelcolor::Rgb565;
+/// use fixel::{Inputs, Pixels, QuarterPixel, Shader, Varying};
+/// enum Stripes {
+///     Upright,
+///     Level,
+/// }
+/// fn stripe(texels: i32) -> u16 {
+///     if texels & 0x8_0000 == 0 { 0xffff } else { 0x001f } // each 8 texels wide, from bits of I16F16
+/// }
+/// impl Shader<Rgb565> for Stripes {
+///     type Quality = QuarterPixel;
+///     fn inputs(&self) -> Inputs {
+///         Inputs::Uv
+///     }
+///     fn color(&self, at: &Varying) -> u16 {
+///         stripe(if matches!(self, Self::Upright) { at.u } else { at.v }.to_bits())
+///     }
+///     // As `color` alone would do, without a choice at each pixel.
+///     fn paint<P: Pixels<u16, QuarterPixel>>(&self, pixels: P) {
+///         match self {
+///             Self::Upright => pixels.shade(|[u]| stripe(u)),
+///             Self::Level => pixels.shade(|[_, v]| stripe(v)),
+///         }
+///     }
+/// }
+/// ```
+pub trait Pixels<W, Q>: sealed::Sealed + Sized {
+    /// Whether the triangle's colours are greys: then there is one attribute for all three channels.
+    fn is_gray(&self) -> bool;
+
+    /// Fills them with one word.
+    fn fill_evenly(self, word: W);
+
+    #[doc(hidden)]
+    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
+
+    /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
+    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of more than five
+    /// attributes nothing is filled.
+    #[inline]
+    fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
+        self.fill(&Each::new(color));
+    }
+}
