@@ -134,19 +134,19 @@ pub use embedded_graphics;
 pub use fixed;
 
 pub use draw::{
-    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, PerspectiveImage, ShadedTriangle,
+    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, PerspectiveImage, Projected,
+    ShadedTriangle, draw_triangle,
 };
 pub use frame::{
     Background, Band, BigEndian, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat, TargetError,
 };
-pub use geometry::{Coloring, RangeError, ScreenVertex, Stats, draw_triangle};
+pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, Turn, Vec3};
-pub use raster::Cull;
 pub use scene::{
-    Camera, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, Projected, Texture, TextureError,
-    Vertex, Wrap, shapes, texels,
+    Camera, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, Texture, TextureError, Vertex,
+    Wrap, shapes, texels,
 };
-pub use shade::{Affine, Exact, Inputs, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
+pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
 
 /// What most programs use: `use fixel::prelude::*;`.
 pub mod prelude {

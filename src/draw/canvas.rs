@@ -1,7 +1,7 @@
 //! What a camera draws to.
 
+use super::mesh::draw;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry;
 use crate::geometry::Count;
 use crate::math::Pose;
 use crate::scene::{Camera, Mesh};
@@ -37,7 +37,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, S: Shader<F>> Canvas<'a, S> for Band<'_
         shader: &'a S,
         stats: &mut impl Count,
     ) {
-        geometry::draw(mesh, camera.projection(), camera.placement(), pose, shader, self, stats);
+        draw(mesh, camera.projection(), camera.placement(), pose, shader, self, stats);
     }
 }
 

@@ -12,13 +12,14 @@
 //! Runs begin where the row does, not where the target does: what a pixel shows does not depend on how much of the
 //! screen the target is, so a part of a picture that is drawn anew fits the rest.
 
-use crate::frame::{NoDepth, PixelFormat};
-use crate::geometry::{Clip, Coloring, MOST_CORNERS, ScreenVertex, ToClip, needs};
+use super::triangle::needs;
+use crate::frame::{NoDepth, PixelFormat, Window};
+use crate::geometry::{Clip, Coloring, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, position};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
-use crate::raster::{Cull, Needs, Oriented, Rows, Run, Span, TriangleSetup, Window, position};
+use crate::raster::{Needs, Rows, STRAIGHT, Span, TriangleSetup};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Patch, STRAIGHT, Shader, Textured};
+use crate::shade::{Patch, Run, Shader, Textured};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};

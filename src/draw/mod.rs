@@ -1,10 +1,15 @@
 //! What joins the rooms: a mesh drawn at once, a list of meshes drawn band by band, pictures drawn straight to a display.
 
+mod camera;
 mod canvas;
 mod direct;
 mod list;
+mod mesh;
 mod pictures;
+mod triangle;
 
+pub use camera::Projected;
 pub use canvas::Canvas;
 pub use list::{CapacityError, Changes, DisplayList, Flushed};
 pub use pictures::{CornersError, PerspectiveImage, ShadedTriangle};
+pub use triangle::draw_triangle;

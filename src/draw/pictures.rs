@@ -2,10 +2,9 @@
 
 use super::direct::{Direct, Quad, Side};
 use crate::frame::PixelFormat;
-use crate::geometry::{RangeError, ScreenVertex};
+use crate::geometry::{Cull, RangeError, ScreenVertex};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4, I16F16, U1F31};
-use crate::raster::Cull;
 use crate::scene::{Camera, Projection, Texture};
 use crate::shade::{Shader, Textured};
 use core::fmt;

@@ -3,11 +3,8 @@
 use super::background::Background;
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
-use crate::num::U1F31;
-use crate::raster::{Rows, Run, Span, TriangleSetup, Window};
-use crate::shade::{Patch, Shader};
+use super::window::Window;
 use core::fmt;
-use core::ops::Range;
 use embedded_graphics::geometry::Size;
 
 /// A strip of rows of a screen, or the whole screen, in memory that the user owns.
@@ -30,7 +27,7 @@ pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
     /// Rows one after another, width · `rows` words.
     pub(crate) pixels: &'a mut [F::Word],
     /// Likewise.
-    depth: &'a mut [D::Word],
+    pub(crate) depth: &'a mut [D::Word],
     pub(crate) width: u16,
     /// How many rows there is memory for.
     rows: u16,
@@ -197,126 +194,6 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         let top = i32::from(self.top);
         Window { columns: 0..i32::from(self.width), rows: top..top + i32::from(self.height) }
     }
-
-    /// Draws what a triangle covers of a window of this band.
-    pub(crate) fn draw<S: Shader<F>>(
-        &mut self,
-        setup: &TriangleSetup,
-        rows: &mut Rows,
-        window: &Window,
-        shader: &S,
-    ) {
-        let (top, width) = (i32::from(self.top), usize::from(self.width));
-        if Patch::<F::Word, D>::takes(setup, rows) {
-            let (pixels, depth) = (&mut *self.pixels, &mut *self.depth);
-            let first = (rows.row() - top) as usize * width;
-            return shader.paint(Patch::<F::Word, D> { setup, rows, first, width, pixels, depth });
-        }
-        rows.each(window, |y, start, end| {
-            let row = (y - top) as usize * width;
-            let (first, end) = (row + start as usize, row + end as usize);
-            let mut span = Span::new(setup, start, y);
-            if D::ALWAYS_PASSES {
-                if let Some(pixels) = self.pixels.get_mut(first..end) {
-                    shader.paint(Run { span, pixels });
-                }
-                return;
-            }
-            let Some(mut depth) = self.depth.get_mut(first..end) else {
-                return;
-            };
-            let (mut near_w, step) = span.depth();
-            let mut first = first;
-            loop {
-                let (run, tested) = visible::<D>(depth, near_w, step);
-                if let Some(pixels) = self.pixels.get_mut(first + run.start..first + run.end)
-                    && !pixels.is_empty()
-                {
-                    shade(shader, Run { span: span.ahead(run.start), pixels });
-                }
-                depth = depth.get_mut(tested..).unwrap_or_default();
-                if depth.is_empty() {
-                    return;
-                }
-                first += tested;
-                near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
-                span = span.ahead(tested);
-            }
-        });
-    }
-}
-
-/// Tests depth up to the first pixel that fails behind one that passes; returns the run of those that pass, and how many were
-/// tested.
-#[inline(never)]
-fn visible<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> (Range<usize>, usize) {
-    let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
-    // It is linear in between.
-    let [start, end] = if near_w.min(last) >> 15 != 0 {
-        first_run(depth, near_w, step, D::test_small)
-    } else {
-        first_run_far_away::<D>(depth, near_w, step)
-    };
-    (start..end, (end + 1).min(depth.len()))
-}
-
-#[cold]
-#[inline(never)]
-fn first_run_far_away<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> [usize; 2] {
-    first_run(depth, near_w, step, D::test)
-}
-
-/// One loop looks for a pixel that passes and one for a pixel that does not: they know nothing of colours, and colours nothing
-/// of depth.
-#[inline(always)]
-fn first_run<W>(
-    depth: &mut [W],
-    mut near_w: u32,
-    step: i32,
-    test: impl Fn(&mut W, U1F31) -> bool,
-) -> [usize; 2] {
-    let mut start = 0;
-    for stored in &mut *depth {
-        let passes = test(stored, U1F31::from_bits(near_w));
-        near_w = near_w.wrapping_add_signed(step);
-        if passes {
-            break;
-        }
-        start += 1;
-    }
-    let behind = depth.get_mut(start + 1..).unwrap_or_default();
-    let passed = passing(behind, near_w, step, test);
-    [start, (start + 1 + passed).min(depth.len())]
-}
-
-/// How many pixels pass up to the first that does not. Out of line on Armv6-M, where it needs all registers: 8 cycles a pixel, not 14.
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W, U1F31) -> bool) -> usize {
-    let mut passes = |stored: &mut W, step: i32| {
-        let passes = test(stored, U1F31::from_bits(near_w));
-        near_w = near_w.wrapping_add_signed(step);
-        passes
-    };
-    let (blocks, rest) = depth.as_chunks_mut::<8>();
-    let tested = 8 * blocks.len();
-    for (n, block) in blocks.iter_mut().enumerate() {
-        // Unknown, so that not all of its multiples are kept in memory.
-        let step = core::hint::black_box(step);
-        for (i, stored) in block.iter_mut().enumerate() {
-            if !passes(stored, step) {
-                return 8 * n + i;
-            }
-        }
-    }
-    tested + rest.iter_mut().position(|stored| !passes(stored, step)).unwrap_or(rest.len())
-}
-
-/// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, run: Run<'_, F::Word>) {
-    shader.paint(run);
 }
 
 impl<F: PixelFormat, D: DepthFormat> fmt::Debug for Band<'_, F, D> {

@@ -72,8 +72,8 @@ impl DepthFormat for Depth16 {
     }
 }
 
-/// No depth: what is drawn last is seen. It takes no memory. A [`DisplayList`](super::DisplayList) can be
-/// [sorted](super::DisplayList::sort_back_to_front) for it.
+/// No depth: what is drawn last is seen. It takes no memory. A [`DisplayList`](crate::DisplayList) can be
+/// [sorted](crate::DisplayList::sort_back_to_front) for it.
 #[derive(Clone, Copy, Debug)]
 pub struct NoDepth;
 

@@ -3,7 +3,7 @@
 use super::band::Band;
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
-use crate::raster::Window;
+use super::window::Window;
 use core::convert::Infallible;
 use core::ops::Range;
 use embedded_graphics::Pixel;

@@ -7,8 +7,10 @@ mod band;
 mod depth;
 mod draw_target;
 mod format;
+mod window;
 
 pub use background::{Background, Gradient, Picture};
 pub use band::{Band, TargetError};
 pub use depth::{Depth16, DepthFormat, NoDepth};
 pub use format::{BigEndian, PixelFormat};
+pub(crate) use window::{Window, first_center};

@@ -1,17 +1,14 @@
-//! The stages in a row.
+//! The triangles of a mesh, one after the other, on the screen.
 
-use super::clip::{Clip, ScreenVertex};
+use super::clip::Clip;
 use super::coloring::{Coloring, dim};
 use super::cut::MOST_CORNERS;
+use super::orient::{Cull, Oriented, area, position};
+use super::screen::ScreenVertex;
 use super::stats::Count;
 use super::transform::ToClip;
-use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::math::{Pose, Vec3};
 use crate::num::I16F16;
-use crate::raster::{Cull, Needs, Oriented, Rows, Straight, TriangleSetup, Window, area, position};
-use crate::scene::{Mesh, Projection, Vertex};
-use crate::shade::{Quality, Shader};
-use core::fmt;
+use crate::scene::{Mesh, Vertex};
 
 /// How many screen vertices are kept, the oldest making room for the newest: neighbours in a mesh share most of theirs.
 /// (Clipping borrows the memory for the corners of a polygon.)
@@ -20,61 +17,9 @@ const HINTS: usize = 64;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 
-/// Draws a mesh in one pose before one camera, from vertex to pixel.
-pub(crate) fn draw<F, D, S>(
-    mesh: &Mesh<'_>,
-    projection: &Projection,
-    camera: &Pose,
-    pose: &Pose,
-    shader: &S,
-    band: &mut Band<'_, F, D>,
-    stats: &mut impl Count,
-) where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
-    stats.count(|stats| &mut stats.meshes);
-    let to_clip = ToClip::new(projection, camera, pose);
-    let clip = Clip::new(projection, to_clip.unit_bits());
-    let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
-    let window = band.window().within(&projection.viewport);
-    if window.is_empty() || !is_seen {
-        stats.count(|stats| &mut stats.meshes_out_of_sight);
-        return;
-    }
-    let lit;
-    let coloring = if S::LIT {
-        lit = coloring::<F, S>(shader, pose);
-        &lit
-    } else {
-        &Coloring::OWN
-    };
-    let placer = Placer {
-        mesh,
-        to_clip: &to_clip,
-        clip: &clip,
-        coloring,
-        cull: shader.cull(),
-        light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
-    };
-    let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
-    let mut cache = Cache::ZERO;
-    cache.forget();
-    while let Some(triangle) = placer.next(&mut cache, stats) {
-        raster.draw_oriented(&triangle, stats);
-    }
-}
-
-/// Not inlined: what it takes is not on the stack while pixels are drawn.
-#[inline(never)]
-fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
-    shader.coloring(pose)
-}
-
 /// The vertices that were placed last. In this order, in which Armv6-M needs the fewest registers to reach them.
 #[repr(C)]
-struct Cache {
+pub(crate) struct VertexCache {
     owners: [u16; CACHED],
     newest: u8,
     /// How many pieces are to be drawn of the triangle that was cut last.
@@ -86,8 +31,8 @@ struct Cache {
     vertices: [ScreenVertex; CACHED],
 }
 
-impl Cache {
-    const ZERO: Self = Self {
+impl VertexCache {
+    pub(crate) const ZERO: Self = Self {
         owners: [0; CACHED],
         newest: 0,
         pieces: 0,
@@ -97,7 +42,7 @@ impl Cache {
     };
 
     /// Nothing is found then: there is 0 in all slots but that to which the hint for 0 leads, and 1 in no other than that.
-    fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.owners = [0; CACHED];
         self.owners[0] = 1;
         [self.hints[0], self.hints[1]] = [0, 1];
@@ -133,21 +78,25 @@ fn in_cache(slot: usize) -> Option<usize> {
 
 /// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
 /// functions are not inlined.
-struct Placer<'a> {
-    mesh: &'a Mesh<'a>,
-    to_clip: &'a ToClip,
-    clip: &'a Clip,
-    coloring: &'a Coloring,
-    cull: Cull,
-    /// [`Placer::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
-    light_face: Option<fn(&Self, &mut Cache, usize)>,
+pub(crate) struct Assembler<'a> {
+    pub(crate) mesh: &'a Mesh<'a>,
+    pub(crate) to_clip: &'a ToClip,
+    pub(crate) clip: &'a Clip,
+    pub(crate) coloring: &'a Coloring,
+    pub(crate) cull: Cull,
+    /// [`Assembler::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
+    pub(crate) light_face: Option<fn(&Self, &mut VertexCache, usize)>,
 }
 
-impl Placer<'_> {
+impl Assembler<'_> {
     /// The next triangle, or piece of one that was cut, that is not left out. Those that are, more than half of a closed mesh,
     /// get no further than this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
-    fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
+    pub(crate) fn next<'c>(
+        &self,
+        cache: &'c mut VertexCache,
+        stats: &mut impl Count,
+    ) -> Option<Oriented<'c>> {
         if cache.pieces > 0 && self.find_piece(cache, stats) {
             return self.piece(cache);
         }
@@ -182,7 +131,12 @@ impl Placer<'_> {
 
     /// Where in the cache a triangle's vertices are, their attributes perhaps [`MISSING`]; `None` if it has to be cut.
     #[inline(always)]
-    fn place(&self, [a, b, c]: [u16; 3], cache: &mut Cache, stats: &mut impl Count) -> Option<[usize; 3]> {
+    fn place(
+        &self,
+        [a, b, c]: [u16; 3],
+        cache: &mut VertexCache,
+        stats: &mut impl Count,
+    ) -> Option<[usize; 3]> {
         // Only a vertex that is placed anew is asked whether it has to be cut off.
         let a = match cache.find(a) {
             Some(slot) => slot,
@@ -202,7 +156,7 @@ impl Placer<'_> {
     /// Puts a vertex in a slot that is not among `used` (bits); no slot if it has to be cut off, and the triangle with it, which
     /// empties the cache.
     #[inline(never)]
-    fn place_vertex(&self, index: u16, used: u32, cache: &mut Cache, stats: &mut impl Count) -> usize {
+    fn place_vertex(&self, index: u16, used: u32, cache: &mut VertexCache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.transformed);
         let slot = cache.give(index, used);
         let to = &mut cache.vertices[slot];
@@ -217,7 +171,7 @@ impl Placer<'_> {
     }
 
     /// Gives the corners of the triangle last looked at its own colours, or those that it has after it was cut, if so many.
-    fn light_face(&self, cache: &mut Cache, cut: usize) {
+    pub(crate) fn light_face(&self, cache: &mut VertexCache, cut: usize) {
         let indices = self.last(cache);
         let Some(light) = self.coloring.on_face(self.corners(cache)) else {
             return;
@@ -234,18 +188,18 @@ impl Placer<'_> {
     }
 
     /// The triangle last looked at.
-    fn last(&self, cache: &Cache) -> [u16; 3] {
+    fn last(&self, cache: &VertexCache) -> [u16; 3] {
         self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
     }
 
-    fn corners(&self, cache: &Cache) -> [&Vertex; 3] {
+    fn corners(&self, cache: &VertexCache) -> [&Vertex; 3] {
         self.last(cache).map(|index| self.mesh.vertex(index))
     }
 
     /// Cuts the triangle last looked at, in the cache's memory.
     #[cold]
     #[inline(never)]
-    fn cut(&self, cache: &mut Cache, stats: &mut impl Count) {
+    fn cut(&self, cache: &mut VertexCache, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
@@ -261,7 +215,7 @@ impl Placer<'_> {
     /// Whether there is a piece left, of a triangle that was cut, that is not left out.
     #[cold]
     #[inline(never)]
-    fn find_piece(&self, cache: &mut Cache, stats: &mut impl Count) -> bool {
+    fn find_piece(&self, cache: &mut VertexCache, stats: &mut impl Count) -> bool {
         while cache.pieces > 0 {
             cache.pieces -= 1;
             if self.piece(cache).is_some() {
@@ -275,140 +229,9 @@ impl Placer<'_> {
     /// That piece, of a fan around the first vertex.
     #[cold]
     #[inline(never)]
-    fn piece<'c>(&self, cache: &'c Cache) -> Option<Oriented<'c>> {
+    fn piece<'c>(&self, cache: &'c VertexCache) -> Option<Oriented<'c>> {
         let [first, rest @ ..] = &cache.vertices;
         let [second, third, ..] = rest.get(usize::from(cache.pieces)..)? else { return None };
         Oriented::new([first, second, third], self.cull)
     }
 }
-
-/// A point of the world on the screen.
-pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
-    let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
-    let mut at = ScreenVertex::default();
-    Clip::new(projection, to_clip.unit_bits())
-        .place(&to_clip, &Coloring::default(), &Vertex::default(), &mut at)
-        .then_some(at)
-}
-
-/// Draws one triangle that is on the screen already: the door for callers with their own vertices.
-///
-/// Only the rows of `band` are drawn, and only what `cull` does not leave out.
-///
-/// # Errors
-///
-/// [`RangeError`] if a vertex lies outside the guard band or a texture coordinate beyond ±8192
-/// texels; nothing is drawn then.
-pub fn draw_triangle<F, D, S>(
-    vertices: &[ScreenVertex; 3],
-    cull: Cull,
-    shader: &S,
-    band: &mut Band<'_, F, D>,
-) -> Result<(), RangeError>
-where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
-    if !vertices.iter().all(ScreenVertex::in_range) {
-        return Err(RangeError);
-    }
-    let window = band.window();
-    Raster::new(shader, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
-    Ok(())
-}
-
-pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
-    shader: &S,
-    [is_orthographic, is_gray]: [bool; 2],
-) -> Needs {
-    Needs {
-        inputs: shader.inputs(),
-        straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
-        every_pixel: S::Quality::EVERY_PIXEL,
-        texture_scale: shader.texture_scale().min(8),
-        depth: !D::ALWAYS_PASSES,
-        gray: is_gray,
-    }
-}
-
-/// The stages from set-up on.
-pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
-    shader: &'a S,
-    band: &'a mut Band<'b, F, D>,
-    window: Window,
-    needs: Needs,
-    setup: TriangleSetup,
-    rows: Rows,
-}
-
-impl<'a, 'b, F, D, S> Raster<'a, 'b, F, D, S>
-where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
-    /// For a camera that may be orthographic, and colours that may all be grey.
-    ///
-    /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
-    #[inline(never)]
-    pub(crate) fn new(shader: &'a S, kind: [bool; 2], window: Window, band: &'a mut Band<'b, F, D>) -> Self {
-        let (setup, rows) = (TriangleSetup::new(), Rows::default());
-        Self { shader, band, window, needs: needs::<F, D, S>(shader, kind), setup, rows }
-    }
-
-    /// The same for another shader and window.
-    pub(crate) fn change(&mut self, shader: &'a S, kind: [bool; 2], window: Window) {
-        (self.shader, self.window) = (shader, window);
-        self.needs = needs::<F, D, S>(shader, kind);
-    }
-
-    #[inline]
-    pub(crate) fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
-        match Oriented::new(vertices, cull) {
-            Some(triangle) => self.draw_oriented(&triangle, stats),
-            None => stats.count(|stats| &mut stats.culled),
-        }
-    }
-
-    /// A triangle that is clockwise on the screen, its nearest vertex first.
-    #[inline]
-    pub(crate) fn draw_in_order(&mut self, vertices: [&ScreenVertex; 3]) {
-        self.setup.corners = vertices.map(position);
-        let area = area(self.setup.corners) as u32;
-        self.draw_placed(&Oriented { vertices, area }, &mut ());
-    }
-
-    #[inline]
-    fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        self.setup.corners = triangle.vertices.map(position);
-        self.draw_placed(triangle, stats);
-    }
-
-    /// A triangle whose corners are in the set-up.
-    #[inline(never)]
-    fn draw_placed(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        self.rows.start(&self.setup.corners, &self.window);
-        if self.rows.are_none() {
-            return stats.count(|stats| &mut stats.out_of_sight);
-        }
-        stats.count(|stats| &mut stats.drawn);
-        self.setup.set(triangle, &self.needs, self.rows.are_simple());
-        self.band.draw(&self.setup, &mut self.rows, &self.window, self.shader);
-    }
-}
-
-/// A vertex lies outside the guard band, or its texture coordinates are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RangeError;
-
-impl fmt::Display for RangeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "a screen vertex lies outside -1024 to 1023 px or its texture coordinates outside ±8192 texels"
-        )
-    }
-}
-
-impl core::error::Error for RangeError {}

@@ -2,9 +2,10 @@
 //!
 //! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge.
 
-use super::clip::{CUT, Clip, FINER, GUARD_BAND, ScreenVertex};
+use super::clip::{CUT, Clip, FINER};
 use super::coloring::Coloring;
 use super::fan::center;
+use super::screen::{GUARD_BAND, ScreenVertex};
 use super::transform::{ClipVertex, ToClip};
 use crate::math::recip::Reciprocal;
 use crate::num::{I12F4, I16F16, U1F31, U8F8, wide};

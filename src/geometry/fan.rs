@@ -10,7 +10,7 @@
 //!            ──── 2 ────┘
 //! ```
 
-use super::clip::ScreenVertex;
+use super::screen::ScreenVertex;
 
 /// The vertex around which no triangle is turned over, or the least of them.
 #[inline(never)]

@@ -25,7 +25,7 @@ pub struct Stats {
     pub drawn: u32,
 }
 
-/// Where [`draw`](super::draw::draw) counts: in [`Stats`], or nowhere at no cost.
+/// Where a draw counts: in [`Stats`], or nowhere at no cost.
 pub trait Count {
     fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32);
 }

@@ -1,6 +1,6 @@
-//! One attribute over a triangle, between [set-up](super::setup) and [shading](super::shade).
+//! One attribute over a triangle, between [set-up](super::setup) and shading.
 
-use super::setup::Plane;
+use super::plane::Plane;
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_17, wide};
 

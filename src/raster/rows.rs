@@ -17,62 +17,9 @@
 //! The number is ceil(−E/16dy) for the edge function E at the row's first centre. From row to row it changes
 //! by the slope, kept as a quotient and a remainder (Bresenham's way), so it stays exact.
 
-use super::setup::TriangleSetup;
+use crate::frame::{Window, first_center};
 use crate::math::recip::{Reciprocal, quotient_of_10_bits};
-use crate::scene::Viewport;
-use crate::shade::{Fill, Pixels, Quality, Sealed};
 use core::ops::Range;
-
-/// Pixels of one row of a triangle, side by side and all visible.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Span<'a> {
-    pub(crate) setup: &'a TriangleSetup,
-    pub(crate) x: i32,
-    pub(crate) y: i32,
-}
-
-const _: () = assert!(size_of::<Span<'_>>() == size_of::<usize>() + 8);
-
-impl<'a> Span<'a> {
-    pub(crate) fn new(setup: &'a TriangleSetup, x: i32, y: i32) -> Self {
-        Self { setup, x, y }
-    }
-
-    /// Without its first pixels.
-    pub(crate) const fn ahead(&self, pixels: usize) -> Self {
-        Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
-    }
-
-    /// q = near/w with 31 fraction bits at the first pixel, and its step.
-    pub(crate) fn depth(&self) -> (u32, i32) {
-        self.setup.at(&self.setup.z, self.x, self.y)
-    }
-}
-
-/// A [`Span`] and its pixels.
-pub(crate) struct Run<'a, W> {
-    pub(crate) span: Span<'a>,
-    pub(crate) pixels: &'a mut [W],
-}
-
-impl<W> Sealed for Run<'_, W> {}
-
-impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
-    #[inline]
-    fn is_gray(&self) -> bool {
-        self.span.setup.gray
-    }
-
-    #[inline]
-    fn fill_evenly(self, word: W) {
-        self.pixels.fill(word);
-    }
-
-    #[inline]
-    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
-        self.span.fill::<Q, N, L>(self.pixels, fill);
-    }
-}
 
 /// An edge from row to row.
 #[derive(Clone, Copy, Debug, Default)]
@@ -178,16 +125,16 @@ impl Rows {
     /// Not inlined: on a Cortex-M0+ it takes less to hand on three places than to choose between corners time and again.
     #[inline(never)]
     fn start_at(&mut self, top: &[i32; 2], next: &[i32; 2], last: &[i32; 2], window: &Window) {
-        let (next_row, last_row) = (first_row(next[1]), first_row(last[1]));
+        let (next_row, last_row) = (first_center(next[1]), first_center(last[1]));
         let Range { start, end } = window.columns;
-        self.row = first_row(top[1]).max(window.rows.start);
+        self.row = first_center(top[1]).max(window.rows.start);
         self.end = next_row.max(last_row).min(window.rows.end);
         // A cut triangle may lie beyond all columns.
         let inside = |x: i32| (x - start * 16) | (end * 16 - x);
         self.is_cut = inside(top[0]) | inside(next[0]) | inside(last[0]) < 0;
         let xs = [top[0], next[0], last[0]];
         if self.is_cut
-            && (xs.iter().all(|x| first_row(*x) >= end) || xs.iter().all(|x| first_row(*x) < start))
+            && (xs.iter().all(|x| first_center(*x) >= end) || xs.iter().all(|x| first_center(*x) < start))
         {
             self.end = self.row;
         }
@@ -307,43 +254,6 @@ impl Rows {
     }
 }
 
-/// The first row whose centres lie on or below `y` (1/16 px).
-const fn first_row(y: i32) -> i32 {
-    (y + 7) >> 4
-}
-
-/// The part of the screen that is drawn to.
-#[derive(Clone, Debug)]
-pub(crate) struct Window {
-    pub(crate) columns: Range<i32>,
-    pub(crate) rows: Range<i32>,
-}
-
-impl Window {
-    /// Of the largest target.
-    pub(crate) const LARGEST: Self = Self { columns: 0..1023, rows: 0..1023 };
-
-    /// The first pixel centre within an extent of three positions (1/16 px) along an axis, and the one behind the last.
-    pub(crate) fn centers(a: i32, b: i32, c: i32) -> [i32; 2] {
-        [first_row(a.min(b).min(c)), first_row(a.max(b).max(c))]
-    }
-
-    pub(crate) fn within(self, viewport: &Viewport) -> Self {
-        let (left, top) = (i32::from(viewport.left), i32::from(viewport.top));
-        let within = |range: Range<i32>, start: i32, length: i16| {
-            range.start.max(start)..range.end.min(start + i32::from(length))
-        };
-        Self {
-            columns: within(self.columns, left, viewport.width),
-            rows: within(self.rows, top, viewport.height),
-        }
-    }
-
-    pub(crate) fn is_empty(&self) -> bool {
-        self.columns.is_empty() || self.rows.is_empty()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -356,7 +266,7 @@ mod tests {
                 seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let top = [(seed >> 16) as i32 % 15_000, (seed >> 4) as i32 & 15];
                 let bottom = [top[0] + dx, top[1] + dy];
-                let (start, end) = (first_row(top[1]), first_row(bottom[1]));
+                let (start, end) = (first_center(top[1]), first_center(bottom[1]));
                 let mut edge = Edge::default();
                 // As the window may have it, from any row on.
                 let first = start + (seed >> 10 & 1) as i32 * ((end - start) / 2);

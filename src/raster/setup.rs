@@ -30,41 +30,17 @@
 //! worst case for any ratio of w, and measured a tenth of it.
 //!
 //! In a sliver the steps are large and nearly cancel, and where distances differ more than 4096-fold q has too few bits at
-//! the far corner for [`Exact`](super::Exact). Then a plane holds the values at the corners instead, and is
+//! the far corner for [`Exact`](crate::Exact). Then a plane holds the values at the corners instead, and is
 //! evaluated by weights from the exact edge functions, which never cancel; `Exact` mixes attributes at every pixel, by weights
 //! from the exact products of edge functions and q. Both are slower, rare, and out of line.
 
 use super::attribute::Attribute;
+use super::plane::Plane;
+use super::small::STRAIGHT;
 use super::straight::{Bend, Straight};
-use crate::geometry::{ScreenVertex, is_gray};
+use crate::geometry::{Inputs, Oriented, ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_high, mul_round, shift_round, wide};
-use crate::shade::{Inputs, STRAIGHT};
-
-/// Which side of a triangle is left out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cull {
-    /// Triangles that run clockwise on the screen.
-    #[default]
-    Back,
-    /// Triangles that run counter-clockwise on the screen.
-    Front,
-    /// None.
-    None,
-}
-
-impl Cull {
-    /// By twice the area, positive clockwise on the screen.
-    #[inline]
-    pub(crate) fn leaves_out(self, area: i32) -> bool {
-        match self {
-            _ if area == 0 => true,
-            Self::Back => area > 0,
-            Self::Front => area < 0,
-            Self::None => false,
-        }
-    }
-}
 
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(crate) const ATTRIBUTES: usize = 5;
@@ -96,15 +72,6 @@ pub(crate) struct TriangleSetup {
 }
 
 const _: () = assert!(size_of::<TriangleSetup>() <= 304);
-
-/// A linear function on the screen, in integers that wrap.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Plane {
-    /// At pixel (0, 0); of a sliver, at corner 0.
-    pub(crate) origin: u32,
-    /// One column to the right, one row down; of a sliver, from corner 0 to corners 1 and 2.
-    pub(crate) steps: [i32; 2],
-}
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
 struct Slopes {
@@ -162,46 +129,6 @@ impl Needs {
             };
             set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
         })
-    }
-}
-
-/// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
-pub(crate) struct Oriented<'a> {
-    pub(crate) vertices: [&'a ScreenVertex; 3],
-    pub(crate) area: u32,
-}
-
-impl<'a> Oriented<'a> {
-    /// `None` for a triangle without area or culled.
-    #[inline]
-    pub(crate) fn new(vertices: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
-        let area = area(vertices.map(position));
-        (!cull.leaves_out(area)).then(|| Self::of_area(vertices, area))
-    }
-
-    /// Of a triangle's [`area`], which is not 0.
-    #[inline(always)]
-    pub(crate) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
-        Self { vertices: in_order(vertices, area, |vertex| vertex.q.to_bits()), area: area.unsigned_abs() }
-    }
-}
-
-/// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
-#[inline(always)]
-pub(crate) fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
-    (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-}
-
-/// The corners of a triangle of this [`area`], which is not 0, as set-up takes them: clockwise, the nearest first.
-#[inline(always)]
-pub(crate) fn in_order<T: Copy>([a, b, c]: [T; 3], area: i32, q: impl Fn(T) -> u32) -> [T; 3] {
-    let [b, c] = if area < 0 { [c, b] } else { [b, c] };
-    if q(b) > q(a) && q(b) >= q(c) {
-        [b, c, a]
-    } else if q(c) > q(a) {
-        [c, a, b]
-    } else {
-        [a, b, c]
     }
 }
 
@@ -438,8 +365,4 @@ impl TriangleSetup {
 #[inline]
 pub(crate) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
     [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
-}
-
-pub(crate) fn position(vertex: &ScreenVertex) -> [i32; 2] {
-    [vertex.x.to_bits().into(), vertex.y.to_bits().into()]
 }

@@ -19,11 +19,15 @@
 //! much again.
 
 use super::attribute::Attribute;
-use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
+use super::plane::Plane;
+use super::setup::{Needs, TriangleSetup, edges};
 use super::straight::{Bend, Straight};
+use crate::geometry::{Inputs, Oriented};
 use crate::math::recip::short_of;
 use crate::num::{mul_16, mul_16_signed, mul_17};
-use crate::shade::{Inputs, STRAIGHT};
+
+/// The longest row of a straight triangle, in steps.
+pub(crate) const STRAIGHT: i32 = 31;
 
 /// What all planes of a triangle have in common.
 struct Slopes {

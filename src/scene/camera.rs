@@ -1,12 +1,8 @@
 //! The camera: where from and how wide a scene is seen.
 
-use super::mesh::Mesh;
 use super::projection::{Projection, clamped, limited};
-use crate::draw::Canvas;
-use crate::geometry;
-use crate::geometry::Stats;
 use crate::math::{Pose, Turn, Vec3, normalized};
-use crate::num::{I2F14, I12F4, I16F16, U1F31, bits_from_f32};
+use crate::num::{I2F14, I12F4, I16F16, bits_from_f32};
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -29,17 +25,6 @@ pub struct Camera {
     projection: Projection,
     /// The camera's axes in the world, as columns of the rotation; its scale is not used.
     pose: Pose,
-}
-
-/// A point of the world on the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Projected {
-    /// Pixels from the left edge; pixel centres are at +½.
-    pub x: I12F4,
-    /// Pixels from the top edge, down.
-    pub y: I12F4,
-    /// near/w (perspective) or 1 at the near and 0 at the far plane (orthographic), to compare with depth.
-    pub q: U1F31,
 }
 
 impl Camera {
@@ -215,14 +200,6 @@ impl Camera {
         (I12F4::from_bits(x as i16), I12F4::from_bits(y as i16))
     }
 
-    /// Where a point of the world is on the screen; `None` if it is not between the planes or not
-    /// in the guard band of −1023 … 1022 px.
-    #[must_use]
-    pub fn project(&self, point: Vec3) -> Option<Projected> {
-        let at = geometry::project(&self.projection, &self.pose, point)?;
-        Some(Projected { x: at.x, y: at.y, q: at.q })
-    }
-
     /// The point of the world that is seen at a place of the screen, at a distance along the line of sight (its w);
     /// saturated at the world's ends. Where on the ground a pixel lies, say, follows from two of them.
     #[must_use]
@@ -236,42 +213,6 @@ impl Camera {
             (((pixels * depth) << 12) / focal).clamp(-1 << 46, 1 << 46)
         };
         moved(&self.pose, [offset(x, 0), -offset(y, 1), -i64::from(distance.to_bits())])
-    }
-
-    /// Draws a mesh, standing as `pose` says: into a band at once, or into a display list, which keeps mesh and shader
-    /// borrowed and may be full.
-    ///
-    /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
-    /// away are culled as the shader says.
-    ///
-    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px; before rounding it is
-    /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
-    /// 10³ and at any distance from the world's origin.
-    ///
-    /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
-    /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a
-    /// near plane at 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
-    /// left out is what [`Stats`] counts.
-    pub fn draw<'a, S, C>(&self, mesh: &Mesh<'a>, pose: &Pose, shader: &'a S, canvas: &mut C) -> C::Output
-    where
-        C: Canvas<'a, S>,
-    {
-        canvas.draw_mesh(self, mesh, pose, shader, &mut ())
-    }
-
-    /// As [`Camera::draw`], and counts what became of the mesh.
-    pub fn draw_counted<'a, S, C>(
-        &self,
-        mesh: &Mesh<'a>,
-        pose: &Pose,
-        shader: &'a S,
-        canvas: &mut C,
-        stats: &mut Stats,
-    ) -> C::Output
-    where
-        C: Canvas<'a, S>,
-    {
-        canvas.draw_mesh(self, mesh, pose, shader, stats)
     }
 }
 

@@ -7,7 +7,7 @@ mod projection;
 pub mod shapes;
 mod texture;
 
-pub use camera::{Camera, Projected};
+pub use camera::Camera;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError, Vertex};

@@ -4,8 +4,9 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
-use super::patch::Row;
+use super::fill::{Fill, LONGEST, in_pairs, plus};
+use super::packed::{longest_row_of, packed_from, packed_step, shifted, uv_in_units};
+use super::row::Row;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::scene::Texture;
 use core::marker::PhantomData;
@@ -51,7 +52,7 @@ pub(crate) struct Gray(i32);
 
 impl Channels<1> for Gray {
     const DROPPED: u32 = 0;
-    const LONGEST: i32 = super::walk::LONGEST as i32;
+    const LONGEST: i32 = LONGEST as i32;
     const RUN_LOG2: u32 = 5;
 
     #[inline]
@@ -171,7 +172,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 }
 
-/// Texels times light; of a texture that repeats, with coordinates packed as [`Texels`](super::Texels) has them.
+/// Texels times light; of a texture that repeats, with coordinates packed as [`Texels`](super::fill::Texels) has them.
 pub(crate) struct LitTexels<'a, F, C> {
     texture: &'a Texture<'a>,
     is_packed: bool,

@@ -2,11 +2,11 @@
 
 use super::colors::{Colors, Gray, LitTexels, RedBlueGreen, color, lit};
 use super::fill::Texels;
-use super::shader::{Affine, Exact, Inputs, Pixels, Quality, QuarterPixel, Shader, Varying};
+use super::quality::{Affine, Exact, Quality, QuarterPixel};
+use super::shader::{Pixels, Shader, Varying};
 use crate::frame::PixelFormat;
-use crate::geometry::Coloring;
+use crate::geometry::{Coloring, Cull, Inputs};
 use crate::math::Pose;
-use crate::raster::Cull;
 use crate::scene::{Lights, Texture};
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{Rgb565, raw::RawU16};

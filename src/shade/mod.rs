@@ -3,12 +3,16 @@
 mod colors;
 mod fill;
 mod material;
+mod packed;
 mod patch;
+mod quality;
+mod row;
+mod run;
 mod shader;
 mod walk;
 
-pub(crate) use fill::Fill;
 pub use material::{Material, Textured};
-pub(crate) use patch::{Patch, STRAIGHT};
-pub(crate) use shader::sealed::Sealed;
-pub use shader::{Affine, Exact, Inputs, Pixels, Quality, QuarterPixel, Shader, Varying};
+pub(crate) use patch::Patch;
+pub use quality::{Affine, Exact, Quality, QuarterPixel};
+pub(crate) use run::Run;
+pub use shader::{Pixels, Shader, Varying};

@@ -1,72 +1,11 @@
 //! Stage 5: what a pixel shows. How attributes get to it along a row is in [`walk`](super::walk).
 
 use super::fill::{Each, Fill};
+use super::quality::{Quality, sealed::Sealed};
 use crate::frame::PixelFormat;
-use crate::geometry::Coloring;
+use crate::geometry::{Coloring, Cull, Inputs};
 use crate::math::Pose;
 use crate::num::I16F16;
-use crate::raster::{Cull, Straight};
-
-/// How exactly perspective is followed between the pixels of a span: [`Exact`], [`QuarterPixel`]
-/// or [`Affine`].
-///
-/// The error is measured in pixels on the screen: the error of an attribute, divided by
-/// its largest change over one pixel step (at least 1 texel or 1/255).
-pub trait Quality: sealed::Sealed {
-    /// Which triangles' attributes count as linear on the screen, without any division.
-    #[doc(hidden)]
-    const STRAIGHT: Straight;
-    /// Whether it takes place at every pixel.
-    #[doc(hidden)]
-    const EVERY_PIXEL: bool;
-}
-
-/// A division at every pixel: an error of at most 0.02 pixel.
-#[derive(Clone, Copy, Debug)]
-pub struct Exact;
-
-/// Divisions as far apart as an error of ¼ pixel allows: the default.
-#[derive(Clone, Copy, Debug)]
-pub struct QuarterPixel;
-
-/// No division: attributes are linear on the screen, and textures swim. The error is unbounded.
-#[derive(Clone, Copy, Debug)]
-pub struct Affine;
-
-impl Quality for Exact {
-    const STRAIGHT: Straight = Straight::Below((1 << 16) / 32);
-    const EVERY_PIXEL: bool = true;
-}
-
-impl Quality for QuarterPixel {
-    const STRAIGHT: Straight = Straight::Below((1 << 16) / 4 * 3);
-    const EVERY_PIXEL: bool = false;
-}
-
-impl Quality for Affine {
-    const STRAIGHT: Straight = Straight::Always;
-    const EVERY_PIXEL: bool = false;
-}
-
-pub(crate) mod sealed {
-    pub trait Sealed {}
-    impl Sealed for super::Exact {}
-    impl Sealed for super::QuarterPixel {}
-    impl Sealed for super::Affine {}
-}
-
-/// Which attributes of the vertices a shader reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Inputs {
-    /// None.
-    None,
-    /// u and v.
-    Uv,
-    /// Red, green and blue.
-    Color,
-    /// u, v, red, green and blue.
-    UvColor,
-}
 
 /// The attributes at one pixel centre; those that a shader does not read are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -193,7 +132,7 @@ pub trait Shader<F: PixelFormat> {
 ///     }
 /// }
 /// ```
-pub trait Pixels<W, Q>: sealed::Sealed + Sized {
+pub trait Pixels<W, Q>: Sealed + Sized {
     /// Whether the triangle's colours are greys: then there is one attribute for all three channels.
     fn is_gray(&self) -> bool;
 

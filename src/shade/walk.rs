@@ -16,8 +16,8 @@
 //! pixels where q changes by 1/12 of itself a pixel (a straight line could be 3 long), every 16 where it is 1/33 (5). Floors
 //! seen level and walls seen straight (q′ ≈ 0) are one straight run with one division.
 
-use super::fill::Fill;
-use super::shader::Quality;
+use super::fill::{Fill, LONGEST};
+use super::quality::Quality;
 use crate::math::recip::{Reciprocal, short};
 use crate::num::{mul_16, mul_16_signed, normalised};
 use crate::raster::{Attribute, Span, short_inverse, towards_zero};
@@ -29,9 +29,6 @@ const LEAST: [u32; LONGEST + 1] = [
     0, 0, 73, 78, 78, 138, 138, 193, 193, 247, 262, 334, 335, 426, 427, 517, 530, 755, 773, 879, 901, 1023,
     1028, 1168, 1183,
 ];
-/// The longest sub-span.
-pub(crate) const LONGEST: usize = 24;
-
 /// The longest sub-span by |q′|/q at its beginning in 1/256: where q rises, and where it falls.
 static LENGTHS: [[u8; 128]; 2] = [lengths(false), lengths(true)];
 

@@ -1,17 +1,17 @@
 //! A frame for later: what cameras drew, transformed, clipped, culled and lit, to be rendered band by band.
 
-use super::changes::Extent;
 use super::entries::{ListTriangle, ListVertex, ListView, MOST_SLOTS};
+use super::extent::Extent;
 use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
 use super::record::{Full, Style, record};
 use crate::draw::canvas::Canvas;
 use crate::draw::canvas::sealed::Sealed;
-use crate::frame::{Background, Band, DepthFormat, PixelFormat};
-use crate::geometry::{Count, Raster, ScreenVertex};
+use crate::draw::triangle::Raster;
+use crate::frame::{Background, Band, DepthFormat, PixelFormat, Window};
+use crate::geometry::{Count, Inputs, ScreenVertex};
 use crate::math::Pose;
-use crate::raster::Window;
 use crate::scene::{Camera, Mesh, Vertex, Viewport};
-use crate::shade::{Inputs, Material, Shader};
+use crate::shade::{Material, Shader};
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics::geometry::Dimensions;
@@ -126,7 +126,7 @@ impl<'a, const V: usize, const T: usize, const D: usize, S, F: PixelFormat> Disp
     }
 
     /// Changes the order from that of drawing to back to front, by the depth (near/w) of triangles' middles on the screen, and as
-    /// drawn where it is the same: for bands with [`NoDepth`](super::NoDepth). Call it after the last draw; another changes it
+    /// drawn where it is the same: for bands with [`NoDepth`](crate::NoDepth). Call it after the last draw; another changes it
     /// back.
     ///
     /// Where triangles cut through each other, or long ones overlap in a circle, no order is right: that takes depth.

@@ -1,10 +1,9 @@
 //! What a display list keeps: screen vertices and triangles.
 
-use crate::geometry::{ScreenVertex, is_gray};
+use crate::frame::Window;
+use crate::geometry::{Inputs, ScreenVertex, is_gray};
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
-use crate::raster::Window;
 use crate::scene::Vertex;
-use crate::shade::Inputs;
 
 /// A screen vertex in a list.
 ///

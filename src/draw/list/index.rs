@@ -1,7 +1,7 @@
 //! Which triangles of a list a band has, and in which order.
 
 use super::entries::{ListTriangle, ROWS_LOG2};
-use crate::raster::Window;
+use crate::frame::Window;
 
 /// How a list finds the triangles of a band.
 pub(crate) enum Index<'l> {

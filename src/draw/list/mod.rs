@@ -3,6 +3,7 @@
 mod changes;
 mod display_list;
 mod entries;
+mod extent;
 mod index;
 mod record;
 

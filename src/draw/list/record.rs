@@ -1,13 +1,14 @@
 //! Stages 1 and 2 for later: meshes become the screen vertices and triangles of a display list.
 
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
-use crate::frame::PixelFormat;
-use crate::geometry::{Clip, Coloring, Count, MOST_CORNERS, ScreenVertex, ToClip, dim};
+use crate::frame::{PixelFormat, Window};
+use crate::geometry::{
+    Clip, Coloring, Count, Cull, Inputs, MOST_CORNERS, ScreenVertex, ToClip, area, dim, in_order,
+};
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
-use crate::raster::{Cull, Window, area, in_order};
 use crate::scene::{Mesh, Projection};
-use crate::shade::{Inputs, Shader};
+use crate::shade::Shader;
 use heapless::VecView;
 
 /// Which capacity is full.

@@ -14,8 +14,9 @@
 //!          b                       south
 //! ```
 
+use super::builder::{Builder, length};
 use super::round::{scaled, sin_cos};
-use super::{Builder, Counts, Shape, length};
+use super::shape::{Counts, Shape};
 use crate::num::I12F4;
 
 /// A sphere of 20 · `frequency`² triangles of nearly one size, without texture coordinates: each edge of an

@@ -1,6 +1,7 @@
 //! Shapes that go round: sphere, torus, cylinder.
 
-use super::{Builder, Counts, Shape, in_strips, length, part};
+use super::builder::{Builder, in_strips, length, part};
+use super::shape::{Counts, Shape};
 use crate::num::I12F4;
 
 /// A sphere with a pole at each end of the y axis, `segments` ≥ 3 around it and `rings` ≥ 2 from pole to pole.

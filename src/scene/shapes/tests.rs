@@ -1,5 +1,6 @@
 use super::*;
-use crate::num::I4F12;
+use crate::num::{I4F12, I12F4};
+use crate::scene::{Mesh, Vertex};
 use std::collections::{BTreeMap, BTreeSet};
 use std::{println, vec::Vec};
 

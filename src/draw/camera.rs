@@ -1,0 +1,73 @@
+//! What a camera does: it puts a point on the screen, and draws a mesh to a canvas.
+
+use super::canvas::Canvas;
+use crate::geometry::{Clip, Coloring, ScreenVertex, Stats, ToClip};
+use crate::math::{Pose, Vec3};
+use crate::num::{I12F4, U1F31};
+use crate::scene::{Camera, Mesh, Projection, Vertex};
+
+/// A point of the world on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Projected {
+    /// Pixels from the left edge; pixel centres are at +½.
+    pub x: I12F4,
+    /// Pixels from the top edge, down.
+    pub y: I12F4,
+    /// near/w (perspective) or 1 at the near and 0 at the far plane (orthographic), to compare with depth.
+    pub q: U1F31,
+}
+
+impl Camera {
+    /// Where a point of the world is on the screen; `None` if it is not between the planes or not
+    /// in the guard band of −1023 … 1022 px.
+    #[must_use]
+    pub fn project(&self, point: Vec3) -> Option<Projected> {
+        let at = project(self.projection(), self.placement(), point)?;
+        Some(Projected { x: at.x, y: at.y, q: at.q })
+    }
+
+    /// Draws a mesh, standing as `pose` says: into a band at once, or into a display list, which keeps mesh and shader
+    /// borrowed and may be full.
+    ///
+    /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
+    /// away are culled as the shader says.
+    ///
+    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px; before rounding it is
+    /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
+    /// 10³ and at any distance from the world's origin.
+    ///
+    /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
+    /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a
+    /// near plane at 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
+    /// left out is what [`Stats`] counts.
+    pub fn draw<'a, S, C>(&self, mesh: &Mesh<'a>, pose: &Pose, shader: &'a S, canvas: &mut C) -> C::Output
+    where
+        C: Canvas<'a, S>,
+    {
+        canvas.draw_mesh(self, mesh, pose, shader, &mut ())
+    }
+
+    /// As [`Camera::draw`], and counts what became of the mesh.
+    pub fn draw_counted<'a, S, C>(
+        &self,
+        mesh: &Mesh<'a>,
+        pose: &Pose,
+        shader: &'a S,
+        canvas: &mut C,
+        stats: &mut Stats,
+    ) -> C::Output
+    where
+        C: Canvas<'a, S>,
+    {
+        canvas.draw_mesh(self, mesh, pose, shader, stats)
+    }
+}
+
+/// A point of the world on the screen.
+pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
+    let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
+    let mut at = ScreenVertex::default();
+    Clip::new(projection, to_clip.unit_bits())
+        .place(&to_clip, &Coloring::default(), &Vertex::default(), &mut at)
+        .then_some(at)
+}

@@ -1,0 +1,167 @@
+//! One triangle on the screen, from set-up to the words in a band.
+
+use crate::frame::{Band, DepthFormat, PixelFormat, Window};
+use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
+use crate::raster::{Needs, Rows, Span, Straight, TriangleSetup, visible};
+use crate::shade::{Patch, Quality, Run, Shader};
+
+/// Draws one triangle that is on the screen already: the door for callers with their own vertices.
+///
+/// Only the rows of `band` are drawn, and only what `cull` does not leave out.
+///
+/// # Errors
+///
+/// [`RangeError`] if a vertex lies outside the guard band or a texture coordinate beyond ±8192
+/// texels; nothing is drawn then.
+pub fn draw_triangle<F, D, S>(
+    vertices: &[ScreenVertex; 3],
+    cull: Cull,
+    shader: &S,
+    band: &mut Band<'_, F, D>,
+) -> Result<(), RangeError>
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    if !vertices.iter().all(ScreenVertex::in_range) {
+        return Err(RangeError);
+    }
+    let window = band.window();
+    Raster::new(shader, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
+    Ok(())
+}
+
+pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
+    shader: &S,
+    [is_orthographic, is_gray]: [bool; 2],
+) -> Needs {
+    Needs {
+        inputs: shader.inputs(),
+        straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
+        every_pixel: S::Quality::EVERY_PIXEL,
+        texture_scale: shader.texture_scale().min(8),
+        depth: !D::ALWAYS_PASSES,
+        gray: is_gray,
+    }
+}
+
+/// The stages from set-up on.
+pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
+    shader: &'a S,
+    band: &'a mut Band<'b, F, D>,
+    window: Window,
+    needs: Needs,
+    setup: TriangleSetup,
+    rows: Rows,
+}
+
+impl<'a, 'b, F, D, S> Raster<'a, 'b, F, D, S>
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    S: Shader<F>,
+{
+    /// For a camera that may be orthographic, and colours that may all be grey.
+    ///
+    /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
+    #[inline(never)]
+    pub(crate) fn new(shader: &'a S, kind: [bool; 2], window: Window, band: &'a mut Band<'b, F, D>) -> Self {
+        let (setup, rows) = (TriangleSetup::new(), Rows::default());
+        Self { shader, band, window, needs: needs::<F, D, S>(shader, kind), setup, rows }
+    }
+
+    /// The same for another shader and window.
+    pub(crate) fn change(&mut self, shader: &'a S, kind: [bool; 2], window: Window) {
+        (self.shader, self.window) = (shader, window);
+        self.needs = needs::<F, D, S>(shader, kind);
+    }
+
+    #[inline]
+    pub(crate) fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
+        match Oriented::new(vertices, cull) {
+            Some(triangle) => self.draw_oriented(&triangle, stats),
+            None => stats.count(|stats| &mut stats.culled),
+        }
+    }
+
+    /// A triangle that is clockwise on the screen, its nearest vertex first.
+    #[inline]
+    pub(crate) fn draw_in_order(&mut self, vertices: [&ScreenVertex; 3]) {
+        self.setup.corners = vertices.map(position);
+        let area = area(self.setup.corners) as u32;
+        self.draw_placed(&Oriented { vertices, area }, &mut ());
+    }
+
+    #[inline]
+    pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
+        self.setup.corners = triangle.vertices.map(position);
+        self.draw_placed(triangle, stats);
+    }
+
+    /// A triangle whose corners are in the set-up.
+    #[inline(never)]
+    fn draw_placed(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
+        self.rows.start(&self.setup.corners, &self.window);
+        if self.rows.are_none() {
+            return stats.count(|stats| &mut stats.out_of_sight);
+        }
+        stats.count(|stats| &mut stats.drawn);
+        self.setup.set(triangle, &self.needs, self.rows.are_simple());
+        fill(self.band, &self.setup, &mut self.rows, &self.window, self.shader);
+    }
+}
+
+/// Draws what a triangle covers of a window of a band.
+fn fill<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
+    band: &mut Band<'_, F, D>,
+    setup: &TriangleSetup,
+    rows: &mut Rows,
+    window: &Window,
+    shader: &S,
+) {
+    let (top, width) = (i32::from(band.top), usize::from(band.width));
+    if Patch::<F::Word, D>::takes(setup, rows) {
+        let (pixels, depth) = (&mut *band.pixels, &mut *band.depth);
+        let first = (rows.row() - top) as usize * width;
+        return shader.paint(Patch::<F::Word, D> { setup, rows, first, width, pixels, depth });
+    }
+    rows.each(window, |y, start, end| {
+        let row = (y - top) as usize * width;
+        let (first, end) = (row + start as usize, row + end as usize);
+        let mut span = Span::new(setup, start, y);
+        if D::ALWAYS_PASSES {
+            if let Some(pixels) = band.pixels.get_mut(first..end) {
+                shader.paint(Run { span, pixels });
+            }
+            return;
+        }
+        let Some(mut depth) = band.depth.get_mut(first..end) else {
+            return;
+        };
+        let (mut near_w, step) = span.depth();
+        let mut first = first;
+        loop {
+            let (run, tested) = visible::<D>(depth, near_w, step);
+            if let Some(pixels) = band.pixels.get_mut(first + run.start..first + run.end)
+                && !pixels.is_empty()
+            {
+                shade(shader, Run { span: span.ahead(run.start), pixels });
+            }
+            depth = depth.get_mut(tested..).unwrap_or_default();
+            if depth.is_empty() {
+                return;
+            }
+            first += tested;
+            near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
+            span = span.ahead(tested);
+        }
+    });
+}
+
+/// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, run: Run<'_, F::Word>) {
+    shader.paint(run);
+}

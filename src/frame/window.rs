@@ -1,0 +1,41 @@
+//! The part of the screen that is drawn to, and which pixel centres lie in an extent.
+
+use crate::scene::Viewport;
+use core::ops::Range;
+
+/// The first pixel whose centre lies on or behind a place along an axis (1/16 px).
+pub(crate) const fn first_center(at: i32) -> i32 {
+    (at + 7) >> 4
+}
+
+/// The part of the screen that is drawn to.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    pub(crate) columns: Range<i32>,
+    pub(crate) rows: Range<i32>,
+}
+
+impl Window {
+    /// Of the largest target.
+    pub(crate) const LARGEST: Self = Self { columns: 0..1023, rows: 0..1023 };
+
+    /// The first pixel centre within an extent of three positions (1/16 px) along an axis, and the one behind the last.
+    pub(crate) fn centers(a: i32, b: i32, c: i32) -> [i32; 2] {
+        [first_center(a.min(b).min(c)), first_center(a.max(b).max(c))]
+    }
+
+    pub(crate) fn within(self, viewport: &Viewport) -> Self {
+        let (left, top) = (i32::from(viewport.left), i32::from(viewport.top));
+        let within = |range: Range<i32>, start: i32, length: i16| {
+            range.start.max(start)..range.end.min(start + i32::from(length))
+        };
+        Self {
+            columns: within(self.columns, left, viewport.width),
+            rows: within(self.rows, top, viewport.height),
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_empty() || self.rows.is_empty()
+    }
+}

@@ -1,0 +1,84 @@
+//! The arrow out of this room: a vertex on the screen.
+
+use super::coloring::Coloring;
+use crate::num::{I12F4, I16F16, U1F31, U8F8};
+use crate::scene::Vertex;
+use core::fmt;
+use core::ops::RangeInclusive;
+
+/// A vertex on the screen, with all that is linear before or after the division by w.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScreenVertex {
+    /// Pixels from the left edge, −1024 … 1023; pixel centres are at +½.
+    pub x: I12F4,
+    /// Pixels from the top edge, down, −1024 … 1023.
+    pub y: I12F4,
+    /// near/w; 0 counts as 2⁻³¹, 1 and more as 1 − 2⁻³¹.
+    pub q: U1F31,
+    /// Texture coordinate to the right, in texels, −8192 … 8192.
+    pub u: I16F16,
+    /// Texture coordinate downwards, likewise.
+    pub v: I16F16,
+    /// Red, green and blue, 0 … 255.
+    pub color: [U8F8; 3],
+}
+
+const _: () = assert!(size_of::<ScreenVertex>() == 24);
+
+/// The guard band of [`ScreenVertex`] positions, in 1/16 px: its width and height of 2047 px are
+/// the most with which every edge function fits an `i32`.
+pub(super) const GUARD_BAND: RangeInclusive<i32> = -1024 * 16..=1023 * 16;
+
+const MAX_TEXELS: i32 = 8192 << 16;
+
+impl ScreenVertex {
+    /// The default.
+    pub(crate) const ZERO: Self = Self {
+        x: I12F4::ZERO,
+        y: I12F4::ZERO,
+        q: U1F31::ZERO,
+        u: I16F16::ZERO,
+        v: I16F16::ZERO,
+        color: [U8F8::ZERO; 3],
+    };
+
+    pub(crate) fn in_range(&self) -> bool {
+        [self.x, self.y].iter().all(|at| GUARD_BAND.contains(&i32::from(at.to_bits())))
+            && [self.u, self.v].iter().all(|t| (-MAX_TEXELS..=MAX_TEXELS).contains(&t.to_bits()))
+    }
+
+    /// What is beyond position and q, from a mesh.
+    #[inline]
+    pub(crate) fn set_attributes(&mut self, vertex: &Vertex, coloring: &Coloring) {
+        [self.u, self.v] = vertex.uv.map(I16F16::from);
+        coloring.of_vertex(vertex, &mut self.color);
+    }
+}
+
+/// Which attributes of the vertices a shader reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inputs {
+    /// None.
+    None,
+    /// u and v.
+    Uv,
+    /// Red, green and blue.
+    Color,
+    /// u, v, red, green and blue.
+    UvColor,
+}
+
+/// A vertex lies outside the guard band, or its texture coordinates are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RangeError;
+
+impl fmt::Display for RangeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "a screen vertex lies outside -1024 to 1023 px or its texture coordinates outside ±8192 texels"
+        )
+    }
+}
+
+impl core::error::Error for RangeError {}

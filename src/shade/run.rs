@@ -1,0 +1,32 @@
+//! A span with the pixels' memory, for a shader to fill.
+
+use super::fill::Fill;
+use super::quality::Quality;
+use super::quality::sealed::Sealed;
+use super::shader::Pixels;
+use crate::raster::Span;
+
+/// A [`Span`] and its pixels.
+pub(crate) struct Run<'a, W> {
+    pub(crate) span: Span<'a>,
+    pub(crate) pixels: &'a mut [W],
+}
+
+impl<W> Sealed for Run<'_, W> {}
+
+impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
+    #[inline]
+    fn is_gray(&self) -> bool {
+        self.span.setup.gray
+    }
+
+    #[inline]
+    fn fill_evenly(self, word: W) {
+        self.pixels.fill(word);
+    }
+
+    #[inline]
+    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
+        self.span.fill::<Q, N, L>(self.pixels, fill);
+    }
+}
