@@ -8,11 +8,11 @@ mod setup;
 mod small;
 mod span;
 mod straight;
+mod triangle;
 
 pub(crate) use attribute::{Attribute, short_inverse, towards_zero};
 pub(crate) use depth::visible;
 pub(crate) use rows::Rows;
-pub(crate) use setup::{Needs, TriangleSetup};
-pub(crate) use small::STRAIGHT;
 pub(crate) use span::Span;
 pub(crate) use straight::Straight;
+pub(crate) use triangle::{Needs, STRAIGHT, TriangleSetup};

@@ -36,42 +36,11 @@
 
 use super::attribute::Attribute;
 use super::plane::Plane;
-use super::small::STRAIGHT;
 use super::straight::{Bend, Straight};
-use crate::geometry::{Inputs, Oriented, ScreenVertex, is_gray};
+use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
+use crate::geometry::{Inputs, Oriented, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_high, mul_round, shift_round, wide};
-
-/// The most attributes that a shader can read: u, v, red, green, blue.
-pub(crate) const ATTRIBUTES: usize = 5;
-
-/// A triangle ready to be cut into spans: corners clockwise on the screen, the nearest first.
-#[derive(Debug)]
-pub(crate) struct TriangleSetup {
-    /// x and y in 1/16 px.
-    pub(crate) corners: [[i32; 2]; 3],
-    /// 1 / (twice the area in 1/256 px²); not of small triangles.
-    area: Reciprocal,
-    /// Whether all colours at the corners are greys, so that one channel stands for three.
-    pub(crate) gray: bool,
-    /// Whether planes hold values at corners: a sliver, or of very different distances.
-    pub(crate) sliver: bool,
-    /// Whether it is set up as a small one: no sliver, and its depth never below 1 of 2¹⁶.
-    pub(crate) is_small: bool,
-    /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
-    pub(crate) straight: bool,
-    /// near/w with 31 fraction bits; for depth.
-    pub(crate) z: Plane,
-    /// near/w scaled to 31 bits; for the division. Not of straight triangles.
-    pub(crate) q: Plane,
-    /// Of a bent triangle: how many steps along a row attributes are nearly linear.
-    pub(crate) longest: i32,
-    /// The least q of the corners.
-    pub(crate) q_min: u32,
-    pub(crate) attributes: [Attribute; ATTRIBUTES],
-}
-
-const _: () = assert!(size_of::<TriangleSetup>() <= 304);
+use crate::num::{mul_high, shift_round, wide};
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
 struct Slopes {
@@ -86,70 +55,7 @@ struct Slopes {
     to_screen: [i32; 2],
 }
 
-/// What a shader wants of a triangle.
-pub(crate) struct Needs {
-    pub(crate) inputs: Inputs,
-    pub(crate) straight: Straight,
-    /// Whether it divides at every pixel.
-    pub(crate) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8.
-    pub(crate) texture_scale: u32,
-    /// Whether depth is tested.
-    pub(crate) depth: bool,
-    /// Whether all colours are known to be grey.
-    pub(crate) gray: bool,
-}
-
-impl Needs {
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle.
-    #[inline]
-    pub(crate) fn each_attribute(
-        &self,
-        triangle: &Oriented<'_>,
-        gray: bool,
-        mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
-    ) -> bool {
-        let vertices = triangle.vertices;
-        let uv = matches!(self.inputs, Inputs::Uv | Inputs::UvColor);
-        let color = matches!(self.inputs, Inputs::Color | Inputs::UvColor);
-        let first = if uv { 0 } else { 2 };
-        let end = if !color {
-            2
-        } else if gray {
-            3
-        } else {
-            5
-        };
-        (first..end).all(|i| {
-            let at = |vertex: &ScreenVertex| match i {
-                0 => vertex.u.to_bits(),
-                1 => vertex.v.to_bits(),
-                _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
-            };
-            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
-        })
-    }
-}
-
 impl TriangleSetup {
-    /// Of no triangle. (One is used for all triangles of a draw: setting it to zero takes 240 cycles.)
-    pub(crate) fn new() -> Self {
-        Self {
-            corners: [[0; 2]; 3],
-            area: Reciprocal { mantissa: 0, zeros: 0 },
-            gray: false,
-            sliver: false,
-            is_small: false,
-            straight: false,
-            z: Plane::default(),
-            q: Plane::default(),
-            longest: 0,
-            q_min: 0,
-            attributes: [Attribute::default(); ATTRIBUTES],
-        }
-    }
-
     #[inline]
     pub(crate) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
@@ -205,74 +111,6 @@ impl TriangleSetup {
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-    }
-
-    /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
-    #[inline]
-    pub(crate) fn at(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
-        let [right, down] = plane.steps;
-        if self.sliver {
-            return self.at_in_sliver(plane, x, y);
-        }
-        (plane.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down))), right)
-    }
-
-    /// By weights: exact edge functions times 1/area.
-    #[cold]
-    #[inline(never)]
-    fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
-        let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
-        let weighted = |edge_function: i32, rise: i32| {
-            // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
-            let weight = wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
-            mul_round::<31>(weight.min(i64::from(i32::MAX)) as i32, rise)
-        };
-        let [b, c] = plane.steps;
-        let value = plane
-            .origin
-            .wrapping_add_signed(weighted((ax - cx) * py - (ay - cy) * px, b))
-            .wrapping_add_signed(weighted((bx - ax) * py - (by - ay) * px, c));
-        // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
-        // two pixels, since the value stays within 32 bits.
-        let sum = wide(cy - ay, b) - wide(by - ay, c);
-        let magnitude = sum.unsigned_abs();
-        let excess = 33u32.saturating_sub(magnitude.leading_zeros());
-        let product = wide((magnitude >> excess) as i32, self.area.mantissa);
-        let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
-        (value, if sum < 0 { -step } else { step })
-    }
-
-    /// The first `N` attributes of a sliver at a pixel's centre, I16F16, with weights edge function · q / sum of both
-    /// at each corner: exact products, divided to 30 bits.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn resolve_in_sliver<const N: usize>(
-        &self,
-        attributes: &[Attribute; N],
-        x: i32,
-        y: i32,
-    ) -> [i32; N] {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
-        let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
-        let (b, c) = ((ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px);
-        let a = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) - b - c;
-        let q = |rise: i32| self.q.origin.wrapping_add_signed(rise) as i32;
-        // Together at most area · 2³¹.
-        let (b, c) = (wide(b, q(self.q.steps[0])), wide(c, q(self.q.steps[1])));
-        let sum = (wide(a, q(0)) + b + c).max(1);
-        // Their upper 31 bits.
-        let excess = 33 - sum.leading_zeros() as i32;
-        let upper = |product: i64| (if excess >= 0 { product >> excess } else { product << -excess }) as i32;
-        let reciprocal = Reciprocal::precise(upper(sum) as u32);
-        let weights = [b, c].map(|product| {
-            let weight = wide(upper(product), reciprocal.mantissa) >> 30;
-            weight.min(i64::from(i32::MAX)) as i32
-        });
-        attributes.each_ref().map(|attribute| {
-            let [b, c] = attribute.plane.steps;
-            attribute.finish(mul_round::<31>(weights[0], b) + mul_round::<31>(weights[1], c))
-        })
     }
 
     /// Finds out whether it is a sliver, too.
@@ -359,10 +197,4 @@ impl TriangleSetup {
         attribute.shift = 32 - exponent as i32;
         attribute
     }
-}
-
-/// By how much the edge functions of corners 1 and 2 change a column, and a row, of 1/16 px.
-#[inline]
-pub(crate) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
-    [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
 }

@@ -20,14 +20,11 @@
 
 use super::attribute::Attribute;
 use super::plane::Plane;
-use super::setup::{Needs, TriangleSetup, edges};
 use super::straight::{Bend, Straight};
+use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
 use crate::geometry::{Inputs, Oriented};
 use crate::math::recip::short_of;
 use crate::num::{mul_16, mul_16_signed, mul_17};
-
-/// The longest row of a straight triangle, in steps.
-pub(crate) const STRAIGHT: i32 = 31;
 
 /// What all planes of a triangle have in common.
 struct Slopes {

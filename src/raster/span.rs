@@ -1,6 +1,6 @@
 //! The arrow out of this room: pixels of one row, side by side.
 
-use super::setup::TriangleSetup;
+use super::triangle::TriangleSetup;
 
 /// Pixels of one row of a triangle, side by side and all visible.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,7 @@
 //! Materials: the shaders that come with the crate.
 
-use super::colors::{Colors, Gray, LitTexels, RedBlueGreen, color, lit};
+use super::channels::{Gray, RedBlueGreen, color, lit};
+use super::colors::{Colors, LitTexels};
 use super::fill::Texels;
 use super::quality::{Affine, Exact, Quality, QuarterPixel};
 use super::shader::{Pixels, Shader, Varying};

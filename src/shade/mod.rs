@@ -1,5 +1,6 @@
 //! From runs of pixels to colours.
 
+mod channels;
 mod colors;
 mod fill;
 mod material;
