@@ -1,4 +1,8 @@
-//! What a camera does: it puts a point on the screen, and draws a mesh to a canvas.
+//! What a camera does: it puts a point of the world on the screen, and draws a mesh to a canvas.
+//!
+//! - In: a mesh, its pose and a shader; or a point of the world.
+//! - Out: what the canvas makes of the mesh; or the point's place on the screen.
+//! - Assumes: nothing: any numbers are taken.
 
 use super::canvas::Canvas;
 use crate::geometry::{Clip, Coloring, ScreenVertex, Stats, ToClip};

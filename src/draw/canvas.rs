@@ -1,4 +1,4 @@
-//! What a camera draws to.
+//! What a camera can draw to: a band, at once, or a display list, for later.
 
 use super::mesh::draw;
 use crate::frame::{Band, DepthFormat, PixelFormat};

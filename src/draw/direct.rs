@@ -1,4 +1,8 @@
-//! The stages from set-up on, straight to a display that nothing is kept for here.
+//! One triangle on the screen, straight to a display, of which nothing is kept in memory.
+//!
+//! - In: three screen vertices.
+//! - Out: the colours of its rows, handed to the display row by row.
+//! - Assumes: the vertices lie in the guard band.
 //!
 //! A row of a triangle is one rectangle for the display. Its pixels are shaded a run at a time, when the display asks for
 //! the first of a run:

@@ -1,4 +1,8 @@
-//! One mesh, from its vertices to the words in a band.
+//! One mesh drawn at once: from its vertices to the words in a band.
+//!
+//! - In: a mesh, its pose, a camera's projection, a shader.
+//! - Out: words and depths in the band.
+//! - Assumes: nothing: a mesh that is out of sight is left out whole.
 
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};

@@ -1,4 +1,7 @@
-//! What draws itself: pictures in perspective and single triangles, for any display and without a buffer.
+//! Pictures in perspective and single triangles as embedded-graphics drawables.
+//!
+//! - In: a texture and where its corners are; or a triangle and a shader.
+//! - Out: colours on any display, without a buffer.
 
 use super::direct::{Direct, Quad, Side};
 use crate::frame::PixelFormat;

@@ -1,4 +1,8 @@
-//! One triangle on the screen, from set-up to the words in a band.
+//! One triangle on the screen: set-up, rows, depth and shading, down to the words in a band.
+//!
+//! - In: three screen vertices.
+//! - Out: words and depths in the band, within a window of it.
+//! - Assumes: the vertices lie in the guard band.
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};

@@ -1,4 +1,8 @@
-//! What stands behind a scene, row by row.
+//! Backgrounds: what a band is cleared to, row by row.
+//!
+//! - In: a row of the screen.
+//! - Out: its words.
+//! - Assumes: a row begins in column 0.
 
 use super::format::PixelFormat;
 use crate::scene::Texture;

@@ -1,4 +1,4 @@
-//! A band: some rows of the screen, or all of them.
+//! A band: some rows of the screen, or all of them, in memory that the user owns.
 
 use super::background::Background;
 use super::depth::DepthFormat;

@@ -1,4 +1,4 @@
-//! Depth formats: which of two surfaces is in front.
+//! Depth formats: how the depth of a pixel is stored, and which of two surfaces is in front.
 
 use crate::num::U1F31;
 

@@ -1,4 +1,4 @@
-//! Pixel formats: how a colour stands in memory.
+//! Pixel formats: how a colour is stored as a word.
 
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{PixelColor, Rgb565, raw::RawU16};

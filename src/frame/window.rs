@@ -1,4 +1,4 @@
-//! The part of the screen that is drawn to, and which pixel centres lie in an extent.
+//! A window: the columns and rows that are drawn to, and which pixel centres lie in an extent.
 
 use crate::scene::Viewport;
 use core::ops::Range;

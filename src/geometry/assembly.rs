@@ -1,4 +1,8 @@
-//! The triangles of a mesh, one after the other, on the screen.
+//! Assembly: the triangles of a mesh, one after the other, with their corners on the screen.
+//!
+//! - In: a mesh, and how its vertices get to the screen.
+//! - Out: triangles that are not culled, oriented, lit, cut where a plane cuts them.
+//! - Assumes: triangles before each other share vertices: a cache of nine keeps them.
 
 use super::clip::Clip;
 use super::coloring::{Coloring, dim};

@@ -1,4 +1,8 @@
-//! What colour a vertex has: its own, a material's, times light.
+//! The colour of a vertex: its own or a material's, times the light that arrives there.
+//!
+//! - In: a vertex, or the corners of a face.
+//! - Out: a colour in U8F8 a channel.
+//! - Assumes: lights were brought to mesh space.
 
 use crate::num::U8F8;
 use crate::scene::{Lighting, Vertex};

@@ -1,4 +1,8 @@
-//! Which way round a triangle runs on the screen, and its corners in the order in which set-up takes them.
+//! Orientation: which way round a triangle runs on the screen, whether that is culled, and its corners in the order of set-up.
+//!
+//! - In: three screen vertices.
+//! - Out: the same clockwise, the nearest first, with twice the area.
+//! - Assumes: differences of positions fit the guard band, so that the area fits an i32.
 
 use super::screen::ScreenVertex;
 

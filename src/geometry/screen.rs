@@ -1,4 +1,4 @@
-//! The arrow out of this room: a vertex on the screen.
+//! The arrow out of geometry: a vertex on the screen, and the range that its numbers have.
 
 use super::coloring::Coloring;
 use crate::num::{I12F4, I16F16, U1F31, U8F8};

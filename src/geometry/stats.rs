@@ -1,4 +1,4 @@
-//! What became of what was drawn.
+//! Counts of what became of the meshes and triangles that were drawn.
 
 /// What became of the meshes that [`Camera::draw_counted`](crate::Camera::draw_counted) drew. Counts add up
 /// over calls, and saturate.

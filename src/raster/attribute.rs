@@ -1,4 +1,8 @@
-//! One attribute over a triangle, between [set-up](super::setup) and shading.
+//! One attribute over a triangle: its plane, and how a value of the plane becomes u again.
+//!
+//! - In: the plane's value at a pixel, and 1/q or none.
+//! - Out: u in I16F16, never outside the range of the corners.
+//! - Assumes: the pixel lies in the triangle.
 
 use super::plane::Plane;
 use crate::math::recip::Reciprocal;

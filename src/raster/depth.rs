@@ -1,4 +1,8 @@
-//! Which pixels of a span are seen: one loop goes on while they are, one while they are not.
+//! The depth test along a span: which of its pixels are seen, as runs.
+//!
+//! - In: stored depths, and near/w at the first pixel with its step.
+//! - Out: the next run of pixels that pass, whose depths are stored.
+//! - Assumes: near/w stays within 0 … 2³¹ along the span.
 //!
 //! The loops know nothing of colours, and what makes colours knows nothing of depth.
 

@@ -1,4 +1,4 @@
-//! A plane: a quantity that is linear on the screen.
+//! A plane: a quantity that is linear on the screen, as a value and two steps in integers that wrap.
 
 /// A linear function on the screen, in integers that wrap.
 #[derive(Clone, Copy, Debug, Default)]

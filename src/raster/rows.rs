@@ -1,4 +1,8 @@
-//! Stage 4: a triangle's rows.
+//! Rows: which pixels of each row a triangle covers, exactly.
+//!
+//! - In: corners in 1/16 px, clockwise, and a window.
+//! - Out: for each row the first pixel and the one behind the last.
+//! - Assumes: the corners lie in the guard band, so that edge functions fit an i32.
 //!
 //! Along a row each edge that is not level gives one number: how many pixel centres lie to its left.
 //!

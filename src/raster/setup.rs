@@ -1,4 +1,8 @@
-//! Stage 3: what a triangle's spans and pixels need, computed once.
+//! Set-up of any triangle: what its rows and pixels need, computed once.
+//!
+//! - In: an oriented triangle, and what the shader wants of it.
+//! - Out: the planes of depth, q and attributes, in a `TriangleSetup` that is used again.
+//! - Assumes: the corners lie in the guard band.
 //!
 //! An edge function is the signed area of an edge and a point, in 1/256 px²:
 //!

@@ -1,4 +1,8 @@
-//! Stage 3 for small triangles, which most of a mesh's are: short products.
+//! Set-up of a small triangle, which most of a mesh's are: the same in short products.
+//!
+//! - In: an oriented triangle, and what the shader wants of it.
+//! - Out: its planes; or no, if the triangle is too large, too thin, or its distances differ too much.
+//! - Assumes: the corners lie in the guard band.
 //!
 //! A triangle of at most 64 pixels across whose distances differ by less than a quarter needs planes that are exact enough
 //! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a

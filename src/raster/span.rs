@@ -1,4 +1,4 @@
-//! The arrow out of this room: pixels of one row, side by side.
+//! The arrow out of raster: pixels of one row of a triangle, side by side.
 
 use super::triangle::TriangleSetup;
 

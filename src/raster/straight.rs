@@ -1,5 +1,9 @@
 //! Which triangles are straight: those whose attributes count as linear on the screen.
 //!
+//! - In: the edges of a triangle, and q and attributes at its corners.
+//! - Out: whether linear interpolation is exact enough, or by how much it has to bend.
+//! - Assumes: q differs by less than a quarter of the least.
+//!
 //! Linear interpolation and the exact one differ by the covariance of u and q under the weights α, divided by q:
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! The arrow from set-up: a triangle with what its spans and pixels need, computed once.
+//! The arrow out of set-up: a triangle with all that its rows and pixels need, computed once.
 
 use super::attribute::Attribute;
 use super::plane::Plane;

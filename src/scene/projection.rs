@@ -1,4 +1,4 @@
-//! How eye space is put on the screen.
+//! The projection: how eye space is put on the screen, and on which part of it.
 
 use crate::num::I16F16;
 use embedded_graphics::geometry::Size;

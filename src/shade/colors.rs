@@ -1,4 +1,8 @@
 //! Fills of colours, and of texels times light.
+//!
+//! - In: a run of pixels, with channels (and u, v) at its first one and their steps.
+//! - Out: words.
+//! - Assumes: attributes are linear, or bend as said, along the run.
 
 use super::channels::{Channels, lit};
 use super::fill::{Fill, in_pairs, plus};

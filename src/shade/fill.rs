@@ -1,4 +1,8 @@
-//! Fills: rows of pixels along which attributes are linear.
+//! Fills: how the pixels of a run get their words from attributes.
+//!
+//! - In: a run of pixels, with attributes at its first one and their steps.
+//! - Out: words.
+//! - Assumes: attributes are linear, or bend as said, along the run.
 
 use super::packed::{longest_row_of, packed_from, packed_step, shifted, sized, uv_in_units};
 use super::row::Row;

@@ -1,4 +1,4 @@
-//! Texture coordinates packed in one word, and the texels at them.
+//! Texture coordinates packed in one word, so that one addition steps both, and the texels at them.
 
 use crate::raster::STRAIGHT;
 use crate::scene::Texture;

@@ -1,4 +1,8 @@
-//! Stage 5 for small straight triangles, which most of a mesh's are: all rows at one go.
+//! A patch: a small triangle drawn at one go, all rows of it.
+//!
+//! - In: a small triangle that is set up, its rows, and the memory of a band.
+//! - Out: words and depths where the triangle is in front.
+//! - Assumes: the triangle is straight (or one quadratic), and at most 32 pixels wide and high.
 //!
 //! A row of such a triangle has two or three pixels. To find which of them are visible, and to hand these to a loop that draws
 //! them, takes longer than to draw them, about 450 cycles on a Cortex-M0+: so nothing is handed on, and one loop tests a pixel's

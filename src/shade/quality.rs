@@ -1,4 +1,4 @@
-//! How exactly perspective is followed.
+//! The qualities: how exactly perspective is followed.
 
 use crate::raster::Straight;
 

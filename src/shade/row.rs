@@ -1,4 +1,7 @@
-//! A short row of pixels, drawn where its depth is in front.
+//! A short row of pixels: depth is tested and colours are made in one loop.
+//!
+//! - In: pixels and depths of one row, near/w and its step.
+//! - Out: words where the depth is in front.
 
 use super::packed::sized;
 use crate::frame::DepthFormat;

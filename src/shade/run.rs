@@ -1,4 +1,4 @@
-//! A span with the pixels' memory, for a shader to fill.
+//! The arrow into a shader: a span with the memory of its pixels.
 
 use super::fill::Fill;
 use super::quality::Quality;

@@ -1,4 +1,8 @@
-//! Stage 5: what a pixel shows. How attributes get to it along a row is in [`walk`](super::walk).
+//! Shaders: what a pixel shows. [`walk`](super::walk) says how attributes get to it along a row.
+//!
+//! - In: the attributes at one pixel centre, or many pixels to choose a fill for.
+//! - Out: words.
+//! - Assumes: attributes lie in the range of the triangle's corners.
 
 use super::fill::{Each, Fill};
 use super::quality::{Quality, sealed::Sealed};

@@ -1,4 +1,8 @@
-//! Stage 5, along a row: perspective with a proven bound, at nearly affine cost.
+//! The walk along a run: perspective with a proven bound, at nearly affine cost.
+//!
+//! - In: a span whose pixels are all drawn, and a fill.
+//! - Out: words, made by the fill from attributes within ¼ pixel of exact.
+//! - Assumes: q is above 0 along the span.
 //!
 //! Along a row u = u₀ + U/q with U and q linear. It is divided every L pixels only. Between two such places, with
 //! q = q₀ and q₁ and a rise Δu, the change of u from pixel to pixel is u′ = Δu/L · q₀q₁/q²: known at both ends, and larger by

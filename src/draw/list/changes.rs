@@ -1,4 +1,8 @@
-//! Only what changed: on a serial display the bus is slower than the chip.
+//! Rendering only what changed since the last frame: on a serial display the bus is slower than the chip.
+//!
+//! - In: a display list, and what the last frame drew to.
+//! - Out: the bands in which something changed, with the rectangle that did.
+//! - Assumes: what is outside the list stays as it was, unless it is marked.
 
 use super::display_list::DisplayList;
 use super::extent::Extent;

@@ -1,4 +1,8 @@
-//! A frame for later: what cameras drew, transformed, clipped, culled and lit, to be rendered band by band.
+//! The display list: meshes are recorded once a frame, as screen vertices and triangles, and rendered band by band.
+//!
+//! - In: what a camera draws.
+//! - Out: bands of a few rows, with the bytes of a whole frame.
+//! - Assumes: the bands of one frame share its width.
 
 use super::entries::{ListTriangle, ListVertex, ListView, MOST_SLOTS};
 use super::extent::Extent;

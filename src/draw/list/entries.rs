@@ -1,4 +1,4 @@
-//! What a display list keeps: screen vertices and triangles.
+//! What a display list keeps: vertices of 16 bytes and triangles of 8.
 
 use crate::frame::Window;
 use crate::geometry::{Inputs, ScreenVertex, is_gray};

@@ -1,4 +1,4 @@
-//! A rectangle of pixels in 8 bytes: what a band's triangles touch.
+//! A rectangle of pixels in 8 bytes: what the triangles of a band touch.
 
 use crate::frame::Window;
 use embedded_graphics::geometry::{Point, Size};

@@ -1,4 +1,8 @@
-//! Which triangles of a list a band has, and in which order.
+//! Which triangles of a list touch a band, and in which order they are drawn.
+//!
+//! - In: the rows of each triangle, or an order of them.
+//! - Out: one triangle after the other.
+//! - Assumes: the index is as new as the list.
 
 use super::entries::{ListTriangle, ROWS_LOG2};
 use crate::frame::Window;

@@ -1,4 +1,8 @@
-//! Stages 1 and 2 for later: meshes become the screen vertices and triangles of a display list.
+//! One mesh recorded: the geometry of a mesh, kept in a display list for later.
+//!
+//! - In: a mesh, its pose, a camera's projection.
+//! - Out: list vertices and list triangles of what is seen.
+//! - Assumes: the caller restores the lengths of the list after an error.
 
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use crate::frame::{PixelFormat, Window};
