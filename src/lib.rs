@@ -19,34 +19,36 @@
 //!
 //! # Example
 //!
-//! One textured triangle and a line of text, drawn at once into a [`Band`] that is the whole screen:
+//! One textured triangle and a word, drawn at once into a [`Band`] that is the whole screen:
 //!
 //! ```
-//! use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_10X20};
-//! use embedded_graphics::{pixelcolor::Rgb565, prelude::*, text::Text};
+//! use fixel::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
+//! use fixel::embedded_graphics::pixelcolor::Rgb565;
+//! use fixel::embedded_graphics::{prelude::*, text::Text};
 //! use fixel::prelude::*;
 //!
 //! static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1); // 2 × 2 texels of RGB565
 //! const TRIANGLE: Mesh = Mesh::new(
 //!     &[
-//!         Vertex::new(-1.0, -1.0, 0.0).uv(0, 16),
-//!         Vertex::new(1.0, -1.0, 0.0).uv(16, 16),
-//!         Vertex::new(0.0, 1.0, 0.0).uv(8, 0),
+//!         Vertex::new(-1.0, -1.0, 0.0).uv(0, 8),
+//!         Vertex::new(1.0, -1.0, 0.0).uv(8, 8),
+//!         Vertex::new(0.0, 1.0, 0.0).uv(4, 0),
 //!     ],
-//!     &[[0, 1, 2]], // a bad index here does not compile
+//!     &[[0, 1, 2]], // counter-clockwise is the front; a bad index here does not compile
 //! );
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let (mut pixels, mut depth) = ([0; 240 * 240], [0; 240 * 240]);
-//! let mut band = Band::<Rgb565, Depth16>::new(Size::new(240, 240), &mut pixels, &mut depth)?;
+//! let (mut pixels, mut depth) = ([0; 64 * 64], [0; 64 * 64]);
+//! let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 64), &mut pixels, &mut depth)?;
 //!
 //! let camera = Camera::perspective(Turn::from_degrees(60), band.size()).at(Vec3::lit(0.0, 0.0, 2.5));
 //! let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(50));
 //! camera.draw(&TRIANGLE, &pose, &Material::textured(&CHECKS), &mut band);
 //!
-//! let gold = MonoTextStyle::new(&FONT_10X20, Rgb565::CSS_GOLD);
-//! Text::new("hello", Point::new(8, 24), gold).draw(&mut band)?; // 2D on top just works
-//! # assert_eq!(band.depth().iter().filter(|&&depth| depth > 0).count(), 9_811);
+//! let gold = MonoTextStyle::new(&FONT_6X10, Rgb565::CSS_GOLD);
+//! Text::new("hello", Point::new(2, 8), gold).draw(&mut band)?; // 2D on top just works
+//!
+//! # assert_eq!(band.depth().iter().filter(|&&depth| depth > 0).count(), 698);
 //! # Ok(())
 //! # }
 //! ```
@@ -55,26 +57,33 @@
 //!
 //! # How it works
 //!
-//! Data flows one way, scene → pipeline → target, and every arrow of the pipeline is one small struct:
+//! Data flows one way, and every arrow between two stages is one small struct. The folders of the source have the stages' names:
 //!
 //! ```text
-//!            transform         clip            setup            span      shade
-//! Vertex[3] ──────────▶ ClipVertex ──▶ ScreenVertex ──▶ TriangleSetup ──▶ Span ──▶ pixel word
+//!  scene      a Mesh of Vertex, a Pose, a Camera, a Texture, Lights
+//!    │
+//!  geometry   transform ─▶ ClipVertex ─▶ clip, cut ─▶ ScreenVertex ─▶ orient, cull
+//!    │
+//!  raster     set-up ─▶ TriangleSetup ─▶ rows ─▶ Span ─▶ depth
+//!    │
+//!  shade      Run ─▶ walk, fill ─▶ words of pixels
+//!    │
+//!  frame      a Band of rows, which goes to the display
 //! ```
 //!
 //! - **transform** multiplies mesh positions by one matrix whose numbers share an exponent.
-//! - **clip** cuts at the near plane and at a guard band far outside the screen, and divides by w with
-//!   one reciprocal.
-//! - **setup** holds the edge functions of the triangle (signed areas: divided by the triangle's own they are
-//!   the barycentric weights) and, for every attribute u, the integers q = near/w and (u − u₀)·q, which
-//!   are linear on the screen where u itself is not.
-//! - **span** finds the first and the last covered pixel of each row exactly: there is no coverage test per pixel.
-//! - **shade** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
+//! - **clip** divides by w with one reciprocal. A triangle that crosses the near plane, or a guard band far outside the screen,
+//!   is cut there first.
+//! - **set-up** holds, for every attribute u, the integers q = near/w and (u − u₀)·q, which are linear on the screen where u
+//!   itself is not.
+//! - **rows** finds the first and the last covered pixel of each row exactly, from the edge functions of the triangle (signed
+//!   areas: divided by the triangle's own they are the barycentric weights). There is no coverage test per pixel.
+//! - **walk** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
 //!   divisions attributes follow the quadratic that has both ends and the slopes there. A small triangle is drawn at one go,
 //!   without any division: its attributes are linear on the screen, or one quadratic.
 //!
-//! A [`DisplayList`] cuts this in two behind **clip**: it keeps the screen vertices and the triangles that are seen, each vertex
-//! transformed and lit once, and sends them through the rest as often as there are bands.
+//! `draw` joins them. A [`DisplayList`] cuts this in two behind **geometry**: it keeps the screen vertices and the triangles that are
+//! seen, each vertex transformed and lit once, and sends them through the rest as often as there are bands.
 //!
 //! # A scene bigger than RAM
 //!

@@ -1,7 +1,22 @@
-//! The dozen lines stand in three places: the example that is run, the crate's front page, and README.
+//! The promise: README's first program compiles and runs in a new project as it stands, on a stack of 128 KiB, and the example and the
+//! crate's front page show the same lines.
 
-/// From the first to the last of the dozen lines, without what only one of the places has.
-fn dozen_lines(text: &str, prefix: &str) -> Vec<String> {
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const README: &str = include_str!("../README.md");
+const EXAMPLE: &str = include_str!("../examples/hello_triangle.rs");
+const FRONT_PAGE: &str = include_str!("../src/lib.rs");
+
+/// The first block of Rust in README.
+fn first_program() -> &'static str {
+    let from = README.split_once("```rust\n").expect("README has a program").1;
+    from.split_once("```").expect("the program ends").0
+}
+
+/// From the texture to the text on top: what draws, without what shows it.
+fn drawing(text: &str, prefix: &str) -> Vec<String> {
     let lines = text.lines().map(|line| line.trim().trim_start_matches(prefix).trim());
     let wanted = lines
         .skip_while(|line| !line.starts_with("static CHECKS"))
@@ -17,9 +32,42 @@ fn dozen_lines(text: &str, prefix: &str) -> Vec<String> {
 }
 
 #[test]
-fn the_example_the_front_page_and_readme_show_the_same_lines() {
-    let example = dozen_lines(include_str!("../examples/hello_triangle.rs"), "");
-    assert!(example.len() > 12);
-    assert_eq!(example, dozen_lines(include_str!("../src/lib.rs"), "//!"), "crate documentation");
-    assert_eq!(example, dozen_lines(include_str!("../README.md"), ""), "README");
+fn the_example_and_the_front_page_show_the_lines_of_readme() {
+    let program = EXAMPLE.find("use fixel").map(|start| &EXAMPLE[start..]).expect("the example uses fixel");
+    assert_eq!(program, first_program());
+    assert!(drawing(EXAMPLE, "").len() > 12);
+    assert_eq!(drawing(EXAMPLE, ""), drawing(FRONT_PAGE, "//!"));
+}
+
+#[test]
+fn readmes_first_program_runs_in_a_new_project_on_a_small_stack() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let project = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hello");
+    fs::create_dir_all(project.join("src")).expect("a new project");
+    // What `cargo new` and `cargo add` write, with this checkout for the published crate.
+    let manifest = format!(
+        "[package]\nname = \"hello\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[dependencies]\nfixel = {{ path = {root:?} }}\n\n[workspace]\n"
+    );
+    fs::write(project.join("Cargo.toml"), manifest).expect("a manifest");
+    fs::write(project.join("src/main.rs"), first_program()).expect("a program");
+    // The versions that are here already.
+    fs::copy(root.join("Cargo.lock"), project.join("Cargo.lock")).expect("a lock file");
+    let built = Command::new(env!("CARGO"))
+        .args(["build", "--quiet", "--offline", "--target-dir", "target"])
+        .current_dir(&project)
+        .env_remove("RUSTFLAGS")
+        .status();
+    assert!(built.expect("cargo runs").success(), "README's program does not compile");
+    // As little stack as some systems give, where a shell can ask for it.
+    let program = if cfg!(unix) { "ulimit -s 128 && exec target/debug/hello" } else { "target/debug/hello" };
+    let shell = if cfg!(unix) { ["sh", "-c"] } else { ["cmd", "/C"] };
+    let ran =
+        Command::new(shell[0]).args([shell[1], program]).current_dir(&project).output().expect("a shell");
+    assert!(ran.status.success(), "README's program fails: {}", String::from_utf8_lossy(&ran.stderr));
+    let shown = String::from_utf8(ran.stdout).expect("text");
+    assert_eq!(shown.lines().count(), 32, "64 rows, two a line");
+    // The white of the texture, the gold of the text.
+    for color in ["38;2;255;251;255m", "38;2;255;215;0m"] {
+        assert!(shown.contains(color), "{color:?} is not in the picture");
+    }
 }

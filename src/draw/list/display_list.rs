@@ -34,7 +34,30 @@ use heapless::Vec;
 /// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame. Rendering takes `&self`:
 /// two cores can render two bands.
 ///
-/// `S` is the shader and `F` the pixel format; both are inferred from use.
+/// `S` is the type of shader and `F` the pixel format. `DisplayList::<8, 4, 1>` is a list of [`Material`]s in the default quality
+/// for bands of `Rgb565`: those are the defaults, and nothing is inferred where the two are left out. For anything else name
+/// them, or write `_` and they are inferred from what is drawn to the list and into which band it is rendered:
+///
+/// ```
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::{BigEndian, Textured, prelude::*};
+/// # fn main() -> Result<(), fixel::CapacityError> {
+/// # const TRIANGLE: Mesh = Mesh::new(
+/// #     &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+/// #     &[[0, 1, 2]],
+/// # );
+/// # static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1);
+/// # let camera = Camera::perspective(Turn::from_degrees(60), Size::new(64, 64)).at(Vec3::lit(0.0, 0.0, 2.5));
+/// # let mut pixels = [0; 64 * 64];
+/// # let mut band = Band::<BigEndian<Rgb565>, NoDepth>::new(Size::new(64, 64), &mut pixels, &mut []).unwrap();
+/// let checks = Textured::new(&CHECKS);
+/// let mut list = DisplayList::<8, 4, 1, _, _>::new();
+/// camera.draw(&TRIANGLE, &Pose::IDENTITY, &checks, &mut list)?; // so S is Textured
+/// list.render(0, &mut band); // a band of BigEndian<Rgb565>, so F is that
+/// # assert!(band.pixels().iter().any(|&word| word != 0));
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// ```
 /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
