@@ -199,16 +199,34 @@ impl core::error::Error for TextureError {}
 /// Turns the little-endian bytes of an RGB565 picture into its `N` texels, in the compiler:
 /// `texels::<1024>(include_bytes!("brick.rgb565"))`.
 ///
+/// The largest, of 1024 × 1024 texels, takes the compiler a fraction of a second for a little-endian target, and some seconds
+/// for a big-endian one. The bytes may lie at odd addresses.
+///
 /// # Panics
 ///
 /// If there are not 2·`N` bytes; in a `const` or `static` that is a compile error.
 #[must_use]
+#[track_caller]
 pub const fn texels<const N: usize>(bytes: &[u8]) -> [u16; N] {
-    assert!(bytes.len() == 2 * N, "an RGB565 picture has two bytes for each texel");
-    let mut texels = [0; N];
+    let (pairs, odd) = bytes.as_chunks::<2>();
+    let texels = match pairs.first_chunk::<N>() {
+        Some(texels) if pairs.len() == N && odd.is_empty() => texels,
+        _ => panic!("an RGB565 picture has two bytes for each texel"),
+    };
+    // One move: turns of a loop, one for each texel, take the compiler a minute. It denies two million of them
+    // (`long_running_const_eval`), in the crate of whoever has the picture.
+    let texels = bytemuck::must_cast::<[[u8; 2]; N], [u16; N]>(*texels);
+    if cfg!(target_endian = "big") { swapped(texels) } else { texels }
+}
+
+/// The texels with their bytes swapped. A turn of the loop for each and no call, which counts as much: the largest stays below
+/// those two million.
+#[cfg_attr(target_endian = "little", allow(dead_code, reason = "for others, and tested here"))]
+#[expect(clippy::manual_rotate, reason = "`rotate_left` would be a call")]
+const fn swapped<const N: usize>(mut texels: [u16; N]) -> [u16; N] {
     let mut i = 0;
     while i < N {
-        texels[i] = u16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]);
+        texels[i] = (texels[i] << 8) | (texels[i] >> 8);
         i += 1;
     }
     texels
@@ -229,6 +247,42 @@ mod tests {
         assert_eq!(texture.fetch_clamp(-1, 0), 0);
         assert_eq!(texture.fetch_clamp(i32::MAX, i32::MAX), 7);
         assert_eq!(texture.fetch_clamp(i32::MIN, 1), 4);
+    }
+
+    /// 0, 1, 2, … in bytes that are not aligned: of an array that begins with another byte.
+    const fn bytes<const N: usize>() -> [u8; N] {
+        let mut bytes = [0; N];
+        let mut i = 0;
+        while i < N {
+            bytes[i] = i as u8;
+            i += 1;
+        }
+        bytes
+    }
+
+    #[test]
+    fn bytes_of_any_place_and_number_become_texels() {
+        const BYTES: [u8; 16] = bytes();
+        for first in 0..4 {
+            let of = |n: usize| &BYTES[first..first + 2 * n];
+            let word = |i: usize| (first + 2 * i + ((first + 2 * i + 1) << 8)) as u16;
+            assert_eq!(texels::<0>(of(0)), [0; 0]);
+            assert_eq!(texels::<1>(of(1)), [word(0)]);
+            assert_eq!(texels::<5>(of(5)), [0, 1, 2, 3, 4].map(word));
+        }
+        // In the compiler, too, as its machines' bytes run.
+        const FIVE: [u16; 5] = texels(BYTES.split_at(1).1.split_at(10).0);
+        assert_eq!(FIVE, [0x0201, 0x0403, 0x0605, 0x0807, 0x0a09]);
+        const SWAPPED: [u16; 5] = swapped(FIVE);
+        assert_eq!(SWAPPED, [0x0102, 0x0304, 0x0506, 0x0708, 0x090a]);
+    }
+
+    #[test]
+    fn a_wrong_number_of_bytes_is_no_picture() {
+        for wrong in [0, 1, 7, 9, 10] {
+            let made = std::panic::catch_unwind(|| texels::<4>(&bytes::<10>()[..wrong]));
+            assert!(made.is_err(), "{wrong} bytes for 4 texels");
+        }
     }
 
     #[test]
