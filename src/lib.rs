@@ -15,7 +15,7 @@
 //! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |
 //! | memory | no `alloc`, no recursion; every capacity is a constant |
 //! | safety | no `unsafe`; no input panics a release build, none writes outside the target, none overflows |
-//! | failure | running out of a capacity is a [`CapacityError`] that names it and leaves the list as it was; bad assets are a compile error through `const fn new` (meant for `const`; elsewhere it panics, documented, the only exception) and a typed error through `try_new`; targets are at most 1023 × 1023, a typed error beyond |
+//! | failure | running out of a capacity is a [`CapacityError`] that names it and leaves the list as it was; bad assets, numbers out of range included, are a compile error through `const fn`s meant for `const` ([`Mesh::new`], [`Texture::new`], [`Vertex::new`], [`Vertex::uv`], [`Vertex::normal`], [`Pose::scaled_lit`]; elsewhere they panic, documented, the only exception) and a typed error through their `try_…`; cameras, [`Vec3::lit`] and everything else limit, documented, with `try_…` beside where one may want to know; targets are at most 1023 × 1023, a typed error beyond |
 //!
 //! # Example
 //!
@@ -150,10 +150,10 @@ pub use frame::{
     Background, Band, BigEndian, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat, TargetError,
 };
 pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
-pub use math::{Pose, Quaternion, Turn, Vec3};
+pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use scene::{
-    Camera, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, Texture, TextureError, Vertex,
-    Wrap, shapes, texels,
+    Camera, LensError, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, Texture, TextureError,
+    Vertex, VertexError, Wrap, shapes, texels,
 };
 pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
 

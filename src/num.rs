@@ -139,19 +139,17 @@ pub(crate) const fn bits_from_f32(value: f32, fraction_bits: u32) -> i32 {
     (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i32
 }
 
-/// As [`bits_from_f32`], saturated to an `i16`.
-pub(crate) const fn bits16_from_f32(value: f32, fraction_bits: u32) -> i16 {
-    let bits = bits_from_f32(value, fraction_bits);
-    if bits > i16::MAX as i32 {
-        i16::MAX
-    } else if bits < i16::MIN as i32 {
-        i16::MIN
-    } else {
-        bits as i16
-    }
+/// As [`bits_from_f32`] for formats of any length; what is no number is too large for all of them.
+#[inline]
+#[expect(clippy::float_arithmetic, reason = "set-up convenience, folded in constants")]
+pub(crate) const fn bits_or_max(value: f32, fraction_bits: u32) -> i64 {
+    let scaled = value as f64 * (1u64 << fraction_bits) as f64;
+    let rounded = (if scaled < 0.0 { scaled - 0.5 } else { scaled + 0.5 }) as i64;
+    if scaled <= f64::MAX { rounded } else { i64::MAX }
 }
 
 #[cfg(test)]
+#[expect(clippy::float_arithmetic, reason = "the f64 truth of the tests")]
 mod tests {
     use super::*;
     use proptest::prelude::*;
@@ -236,6 +234,26 @@ mod tests {
         }
     }
 
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn literals_are_rounded_as_exactly_in_100_000_cases(any: u32, place in -9.0..9.0_f32, ends in -2_i32..=2, fraction_bits in 0_u32..=22) {
+            // A step of an f32 beside a half of the last bit, too.
+            let half = (place * 4096.0).floor().abs() / 4096.0 + 0.5 / 4096.0;
+            let beside_half = f32::from_bits(half.to_bits().wrapping_add_signed(ends));
+            for value in [f32::from_bits(any), place, beside_half, -beside_half] {
+                // Exact in f64; `round` takes halves away from 0.
+                let exactly = (f64::from(value) * f64::from(1 << fraction_bits)).round();
+                let bits = bits_or_max(value, fraction_bits);
+                if exactly.abs() < 2_f64.powi(52) {
+                    prop_assert_eq!(bits as f64, exactly, "{}", value);
+                } else {
+                    prop_assert!(bits.unsigned_abs() >= 1 << 52 && (bits < 0) == (exactly < 0.0), "{}", value);
+                }
+            }
+        }
+    }
+
     #[test]
     fn literals_round_saturate_and_take_nan() {
         assert_eq!(bits_from_f32(1.5, 12), 6144);
@@ -244,7 +262,15 @@ mod tests {
         assert_eq!(bits_from_f32(f32::NAN, 16), 0);
         assert_eq!(bits_from_f32(f32::INFINITY, 16), i32::MAX);
         assert_eq!(bits_from_f32(f32::NEG_INFINITY, 16), i32::MIN);
-        assert_eq!(bits16_from_f32(9.0, 12), i16::MAX);
-        assert_eq!(bits16_from_f32(-9.0, 12), i16::MIN);
+    }
+
+    #[test]
+    fn literals_that_are_no_numbers_fit_no_format() {
+        for none in [f32::NAN, -f32::NAN, f32::INFINITY, f32::MAX] {
+            assert_eq!(bits_or_max(none, 12), i64::MAX);
+        }
+        for none in [f32::NEG_INFINITY, f32::MIN] {
+            assert_eq!(bits_or_max(none, 12), i64::MIN);
+        }
     }
 }

@@ -346,7 +346,7 @@ fn turned() -> BoxedStrategy<Pose> {
 
 fn wild_pose() -> BoxedStrategy<Pose> {
     let scale = prop_oneof![
-        2 => number().prop_map(|scale| Pose::IDENTITY.scaled_lit(scale).scale),
+        2 => number().prop_map(|scale| Pose::IDENTITY.try_scaled_lit(scale).map_or(U10F22::MAX, |pose| pose.scale)),
         1 => any::<u32>().prop_map(U10F22::from_bits),
         2 => Just(U10F22::ONE),
     ];
@@ -398,7 +398,12 @@ fn tame_camera() -> BoxedStrategy<Camera> {
 
 fn mesh_vertex() -> BoxedStrategy<Vertex> {
     let place = prop_oneof![
-        1 => [number(), number(), number()].prop_map(|[x, y, z]| Vertex::new(x, y, z)),
+        1 => [number(), number(), number()].prop_map(|[x, y, z]| {
+            // What is no position is one at an end of the format.
+            let nearest = |value| I4F12::saturating_from_num(if f32::is_nan(value) { 0.0 } else { value });
+            let at_the_ends = || Vertex { position: [x, y, z].map(nearest), ..Vertex::new(0.0, 0.0, 0.0) };
+            Vertex::try_new(x, y, z).unwrap_or_else(|_| at_the_ends())
+        }),
         4 => [-1.0..1.0_f32, -1.0..1.0, -1.0..1.0].prop_map(|[x, y, z]| Vertex::new(x, y, z)),
         1 => any::<[i16; 3]>().prop_map(|bits| {
             Vertex { position: bits.map(I4F12::from_bits), ..Vertex::new(0.0, 0.0, 0.0) }
@@ -407,7 +412,8 @@ fn mesh_vertex() -> BoxedStrategy<Vertex> {
     (place, any::<[u8; 3]>(), any::<[i16; 2]>(), any::<bool>())
         .prop_map(|(vertex, [r, g, b], [u, v], whole)| {
             let vertex = vertex.color(r, g, b);
-            if whole { vertex.uv(u, v) } else { Vertex { uv: [u, v].map(I12F4::from_bits), ..vertex } }
+            let sixteenths = Vertex { uv: [u, v].map(I12F4::from_bits), ..vertex };
+            if whole { vertex.try_uv(u, v).unwrap_or(sixteenths) } else { sixteenths }
         })
         .boxed()
 }

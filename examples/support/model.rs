@@ -69,17 +69,23 @@ impl Model {
 
         let vertices = points.iter().zip(&normals).enumerate().map(|(i, (point, normal))| {
             let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - (low[axis] + high[axis]) / 2.0) * scale);
-            let length = normal.iter().map(|n| n * n).sum::<f32>().sqrt().max(f32::MIN_POSITIVE);
+            // No square of an f32 is 0 or too large in f64.
+            let length =
+                normal.iter().map(|n| f64::from(*n).powi(2)).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+            let [nx, ny, nz] = normal.map(|n| (f64::from(n) / length) as f32);
             let [u, v] = match mesh.texcoords.get(2 * i..2 * i + 2) {
                 // v runs upwards in the file.
                 Some(&[u, v]) => [u * texels[0], (1.0 - v) * texels[1]],
                 _ => [0.0; 2],
             };
-            Vertex::new(x, y, z)
-                .normal(normal[0] / length, normal[1] / length, normal[2] / length)
-                .uv_sixteenths(I12F4::saturating_from_num(u), I12F4::saturating_from_num(v))
+            let [Some(u), Some(v)] = [u, v].map(I12F4::checked_from_num) else {
+                return Err(in_file(&format!("texture coordinates of ({u}, {v}) texels")).into());
+            };
+            let vertex = Vertex::try_new(x, y, z).and_then(|vertex| vertex.try_normal(nx, ny, nz));
+            Ok(vertex.map_err(|error| in_file(&error))?.uv_sixteenths(u, v))
         });
-        let model = Self { vertices: vertices.collect(), triangles };
+        let vertices = vertices.collect::<Result<_, Box<dyn Error>>>()?;
+        let model = Self { vertices, triangles };
         model.mesh().map_err(|error| in_file(&error))?;
         Ok(model)
     }

@@ -78,7 +78,7 @@ impl Walls {
         for &t in rows {
             for &s in columns {
                 let [x, y, z] = along(along(corner, right, s), up, t);
-                let [u, v] = [-t, -s].map(|place| I12F4::saturating_from_num(place * TEXELS_A_UNIT));
+                let [u, v] = [-t, -s].map(|place| I12F4::unwrapped_from_num(place * TEXELS_A_UNIT));
                 let vertex = Vertex::new(x, y, z).uv_sixteenths(u, v);
                 self.vertices.push(vertex.normal(normal[0], normal[1], normal[2]));
             }

@@ -1,7 +1,8 @@
 //! Where a mesh or a camera stands.
 
 use super::{Quaternion, Turn, Vec3};
-use crate::num::{I2F14, I16F16, U10F22, bits_from_f32, shift_round, wide};
+use crate::num::{I2F14, I16F16, U10F22, bits_or_max, shift_round, wide};
+use core::fmt;
 use core::ops::Mul;
 
 /// A rotation, one scale for all axes, and a translation, applied in this order.
@@ -109,11 +110,40 @@ impl Pose {
         Self { scale, ..self }
     }
 
-    /// As [`Pose::scaled`], from a literal: saturated to 0 … 512, 0 for NaN.
+    /// As [`Pose::scaled`], from a literal: 0 or more and below 1024, rounded to 2⁻²². In a `const` or `static` one outside
+    /// that, or NaN, is a compile error:
+    ///
+    /// ```compile_fail,E0080
+    /// # use fixel::Pose;
+    /// const HUGE: Pose = Pose::IDENTITY.scaled_lit(5000.0);
+    /// # let _ = HUGE;
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// Elsewhere it panics then. See [`Pose::try_scaled_lit`].
     #[must_use]
+    #[inline]
+    #[track_caller]
     pub const fn scaled_lit(self, scale: f32) -> Self {
-        let bits = bits_from_f32(scale, 22);
-        self.scaled(U10F22::from_bits(if bits < 0 { 0 } else { bits as u32 }))
+        match self.try_scaled_lit(scale) {
+            Ok(pose) => pose,
+            Err(_) => panic!("the scale of a pose is not a number of 0 or more and below 1024"),
+        }
+    }
+
+    /// As [`Pose::scaled_lit`], for numbers that come at run time; in software where there is no FPU.
+    ///
+    /// # Errors
+    ///
+    /// [`ScaleError`] for a scale that is negative, 1024 or more, or NaN.
+    #[inline]
+    pub const fn try_scaled_lit(self, scale: f32) -> Result<Self, ScaleError> {
+        let bits = bits_or_max(scale, 22);
+        if bits < 0 || bits > u32::MAX as i64 {
+            return Err(ScaleError { scale });
+        }
+        Ok(self.scaled(U10F22::from_bits(bits as u32)))
     }
 
     /// This pose first, then `outer`; as an operator `outer * self`.
@@ -260,6 +290,21 @@ impl Pose {
         self
     }
 }
+
+/// A scale that a [`Pose`] cannot have: it is not a number of 0 or more and below 1024.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleError {
+    /// What was given.
+    pub scale: f32,
+}
+
+impl fmt::Display for ScaleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the scale of a pose is not a number of 0 or more and below 1024: {}", self.scale)
+    }
+}
+
+impl core::error::Error for ScaleError {}
 
 impl Default for Pose {
     fn default() -> Self {

@@ -1,8 +1,9 @@
 //! The camera: where from and how wide a scene is seen.
 
+use super::LensError;
 use super::projection::{Projection, clamped, limited};
 use crate::math::{Pose, Turn, Vec3, normalized};
-use crate::num::{I2F14, I12F4, I16F16, bits_from_f32};
+use crate::num::{I2F14, I12F4, I16F16, bits_from_f32, bits_or_max};
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -31,32 +32,74 @@ impl Camera {
     /// A camera whose picture is `vertical` high, as an angle, on a screen of `size` pixels.
     ///
     /// The angle is limited to what gives a focal length of 1/16 to 8191 pixels, the size
-    /// to 1023 × 1023.
+    /// to 1023 × 1023: [`Camera::try_perspective`] says so.
     #[must_use]
     pub const fn perspective(vertical: Turn, size: Size) -> Self {
-        // f = h/2 · cos(a/2) / sin(a/2), in I16F16.
-        let half = Turn::from_raw(vertical.raw() / 2);
-        let (sin, cos) = (half.sin().to_bits() as i64, half.cos().to_bits() as i64);
-        let height = limited(size.height) as i64;
-        let focal = if sin > 0 { (height << 15) * cos / sin } else { i64::MAX };
-        Self::new(focal, false, size)
+        Self::new(focal_of(vertical, size), false, size)
+    }
+
+    /// As [`Camera::perspective`], if nothing has to be limited.
+    ///
+    /// ```
+    /// use fixel::embedded_graphics::geometry::Size;
+    /// use fixel::{Camera, LensError, Turn};
+    /// let size = Size::new(1280, 720);
+    /// assert_eq!(Camera::try_perspective(Turn::from_degrees(60), size), Err(LensError::Size(size)));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`LensError::Size`] or [`LensError::Angle`].
+    pub const fn try_perspective(vertical: Turn, size: Size) -> Result<Self, LensError> {
+        if Projection::limits_size(size) {
+            Err(LensError::Size(size))
+        } else if Projection::limits_focal(focal_of(vertical, size)) {
+            Err(LensError::Angle { vertical, height: size.height })
+        } else {
+            Ok(Self::perspective(vertical, size))
+        }
     }
 
     /// A camera whose screen is `pixels` pixels away from the eye: an object as far away as it
     /// is wide is that many pixels wide.
     ///
-    /// Limited to 1/16 … 8191, the size to 1023 × 1023; NaN is 1/16.
+    /// Limited to 1/16 … 8191, the size to 1023 × 1023; NaN is 1/16. [`Camera::try_focal`] says so.
     #[must_use]
     pub const fn focal(pixels: f32, size: Size) -> Self {
         Self::new(bits_from_f32(pixels, 16) as i64, false, size)
     }
 
+    /// As [`Camera::focal`], if nothing has to be limited.
+    ///
+    /// # Errors
+    ///
+    /// [`LensError::Size`] or [`LensError::Focal`].
+    pub const fn try_focal(pixels: f32, size: Size) -> Result<Self, LensError> {
+        match limits(pixels, size) {
+            Some(error) => Err(error),
+            None => Ok(Self::focal(pixels, size)),
+        }
+    }
+
     /// A camera without perspective: everything is `pixels_per_unit` pixels a world unit, near or far.
     ///
-    /// It sees from 1/16 to 256 in front of it; depth is linear between. Limited as [`Camera::focal`].
+    /// It sees from 1/16 to 256 in front of it; depth is linear between. Limited as [`Camera::focal`]:
+    /// [`Camera::try_orthographic`] says so.
     #[must_use]
     pub const fn orthographic(pixels_per_unit: f32, size: Size) -> Self {
         Self::new(bits_from_f32(pixels_per_unit, 16) as i64, true, size)
+    }
+
+    /// As [`Camera::orthographic`], if nothing has to be limited.
+    ///
+    /// # Errors
+    ///
+    /// [`LensError::Size`] or [`LensError::Focal`].
+    pub const fn try_orthographic(pixels_per_unit: f32, size: Size) -> Result<Self, LensError> {
+        match limits(pixels_per_unit, size) {
+            Some(error) => Err(error),
+            None => Ok(Self::orthographic(pixels_per_unit, size)),
+        }
     }
 
     const fn new(focal: i64, orthographic: bool, size: Size) -> Self {
@@ -216,6 +259,25 @@ impl Camera {
     }
 }
 
+/// f = h/2 · cos(a/2) / sin(a/2), in I16F16 and not yet limited.
+const fn focal_of(vertical: Turn, size: Size) -> i64 {
+    let half = Turn::from_raw(vertical.raw() / 2);
+    let (sin, cos) = (half.sin().to_bits() as i64, half.cos().to_bits() as i64);
+    let height = limited(size.height) as i64;
+    if sin > 0 { (height << 15) * cos / sin } else { i64::MAX }
+}
+
+/// What has to be limited of a focal length, or of pixels a world unit.
+const fn limits(pixels: f32, size: Size) -> Option<LensError> {
+    if Projection::limits_size(size) {
+        Some(LensError::Size(size))
+    } else if Projection::limits_focal(bits_or_max(pixels, 16)) {
+        Some(LensError::Focal(pixels))
+    } else {
+        None
+    }
+}
+
 /// The point of the world at a place in the space of an eye (within ±2⁴⁶, I16F16), saturated at the world's ends.
 fn moved(pose: &Pose, eye: [i64; 3]) -> Vec3 {
     let along = |axis: usize| {
@@ -252,6 +314,52 @@ mod tests {
     #[test]
     fn a_right_angle_sees_a_screen_as_high_as_twice_the_focal_length() {
         assert_eq!(Camera::perspective(Turn::from_degrees(90), SIZE).projection.focal, 60);
+    }
+
+    #[test]
+    fn what_a_camera_has_to_limit_is_a_typed_error_beside_it() {
+        let degrees = Turn::from_degrees;
+        for size in [SIZE, Size::new(1, 1), Size::new(1023, 1023)] {
+            for vertical in [degrees(40), degrees(90)] {
+                assert_eq!(Camera::try_perspective(vertical, size), Ok(Camera::perspective(vertical, size)));
+            }
+            for pixels in [0.0625, 1.0, 8191.0] {
+                assert_eq!(Camera::try_focal(pixels, size), Ok(Camera::focal(pixels, size)));
+                assert_eq!(Camera::try_orthographic(pixels, size), Ok(Camera::orthographic(pixels, size)));
+            }
+        }
+        for size in [Size::new(1024, 1), Size::new(1, 1024), Size::new(u32::MAX, u32::MAX)] {
+            let error = LensError::Size(size);
+            assert_eq!(Camera::try_perspective(degrees(60), size), Err(error));
+            assert_eq!(Camera::try_focal(100.0, size), Err(error));
+            assert_eq!(Camera::try_orthographic(100.0, size), Err(error));
+        }
+        for pixels in [0.0, -1.0, 0.0624, 8191.1, f32::NAN, f32::INFINITY] {
+            for tried in [Camera::try_focal(pixels, SIZE), Camera::try_orthographic(pixels, SIZE)] {
+                let Err(LensError::Focal(found)) = tried else { panic!("{tried:?}") };
+                assert_eq!(found.to_bits(), pixels.to_bits());
+            }
+        }
+        // 60 px / tan(a/2) is 8191 px at 0.84°, and 1/16 px at 179.88°; beyond 180° there is no picture.
+        for (vertical, fits) in [
+            (Turn::ZERO, false),
+            (Turn::from_raw(150), false), // 0.824°
+            (Turn::from_raw(156), true),  // 0.857°
+            (degrees(179), true),
+            (degrees(180), false),
+            (degrees(300), false),
+        ] {
+            let expected = if fits {
+                Ok(Camera::perspective(vertical, SIZE))
+            } else {
+                Err(LensError::Angle { vertical, height: SIZE.height })
+            };
+            assert_eq!(Camera::try_perspective(vertical, SIZE), expected, "{vertical:?}");
+        }
+        assert_eq!(
+            std::string::ToString::to_string(&LensError::Size(Size::new(1280, 720))),
+            "a side of a camera's screen is at most 1023 pixels: 1280 × 720"
+        );
     }
 
     #[test]

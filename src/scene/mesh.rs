@@ -1,89 +1,8 @@
 //! Meshes: vertices and triangles in flash.
 
-use crate::num::{I4F12, I12F4, bits_from_f32, bits16_from_f32};
+use super::vertex::Vertex;
+use crate::num::I4F12;
 use core::fmt;
-
-/// A vertex of a mesh, 16 bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Vertex {
-    /// Position in mesh units; the pose places and scales it.
-    pub position: [I4F12; 3],
-    /// Texture coordinates in texels, (0, 0) the texture's first texel's outer corner.
-    pub uv: [I12F4; 2],
-    /// Red, green, blue, for [`Material::gouraud`](crate::Material::gouraud).
-    pub color: [u8; 3],
-    /// The direction that lights see, of length 1.0 = 127 in mesh space.
-    pub normal: [i8; 3],
-}
-
-const _: () = assert!(size_of::<Vertex>() == 16);
-
-impl Vertex {
-    /// A vertex at a position from literals, −8 … 7.9998: rounded to 1/4096, saturated, NaN is 0.
-    #[must_use]
-    pub const fn new(x: f32, y: f32, z: f32) -> Self {
-        Self {
-            position: [
-                I4F12::from_bits(bits16_from_f32(x, 12)),
-                I4F12::from_bits(bits16_from_f32(y, 12)),
-                I4F12::from_bits(bits16_from_f32(z, 12)),
-            ],
-            uv: [I12F4::ZERO; 2],
-            color: [255; 3],
-            normal: [0; 3],
-        }
-    }
-
-    /// The same with texture coordinates in whole texels, −2048 … 2047 (saturated).
-    #[must_use]
-    pub const fn uv(mut self, u: i16, v: i16) -> Self {
-        self.uv = [whole_texels(u), whole_texels(v)];
-        self
-    }
-
-    /// The same with texture coordinates in texels, in steps of 1/16.
-    #[must_use]
-    pub const fn uv_sixteenths(mut self, u: I12F4, v: I12F4) -> Self {
-        self.uv = [u, v];
-        self
-    }
-
-    /// The same with a normal from literals: a vector of length 1, rounded to 1/127 and saturated; NaN is 0.
-    #[must_use]
-    pub const fn normal(mut self, x: f32, y: f32, z: f32) -> Self {
-        self.normal = [unit127(x), unit127(y), unit127(z)];
-        self
-    }
-
-    /// The same with a colour.
-    #[must_use]
-    pub const fn color(mut self, red: u8, green: u8, blue: u8) -> Self {
-        self.color = [red, green, blue];
-        self
-    }
-}
-
-#[expect(clippy::float_arithmetic, reason = "set-up convenience, folded in constants")]
-const fn unit127(component: f32) -> i8 {
-    let bits = bits_from_f32(component * 127.0, 0);
-    if bits > 127 {
-        127
-    } else if bits < -127 {
-        -127
-    } else {
-        bits as i8
-    }
-}
-
-const fn whole_texels(texels: i16) -> I12F4 {
-    I12F4::from_bits(if texels > 2047 {
-        2047 * 16
-    } else if texels < -2048 {
-        i16::MIN
-    } else {
-        texels * 16
-    })
-}
 
 /// Borrowed vertices and the triangles between them, checked when made.
 ///
@@ -105,6 +24,9 @@ const fn whole_texels(texels: i16) -> I12F4 {
 /// const BAD: Mesh = Mesh::new(&[Vertex::new(0.0, 0.0, 0.0)], &[[0, 0, 1]]);
 /// # let _ = BAD;
 /// ```
+///
+/// One of 65 536 vertices and 65 535 triangles takes the compiler a few seconds. A constant may take two million calls and turns
+/// of loops (`long_running_const_eval`), of which this takes 8 a vertex and 2 a triangle, and a vertex from literals 20.
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
     vertices: &'a [Vertex],
@@ -133,6 +55,29 @@ impl Triangles<'_> {
             Self::U8(triangles) => [triangles[i][0] as u16, triangles[i][1] as u16, triangles[i][2] as u16],
             Self::U16(triangles) => triangles[i],
         }
+    }
+
+    /// The first triangle that names a vertex that is not there, if there are so many `vertices`.
+    ///
+    /// A call and a turn of the loop a triangle: after two million the compiler says that a constant takes too long.
+    const fn first_bad(&self, vertices: usize) -> Option<MeshError> {
+        let count = self.len();
+        let mut triangle = 0;
+        while triangle < count {
+            let [a, b, c] = self.at(triangle);
+            let index = if a as usize >= vertices {
+                a
+            } else if b as usize >= vertices {
+                b
+            } else {
+                c
+            };
+            if index as usize >= vertices {
+                return Some(MeshError { triangle, index });
+            }
+            triangle += 1;
+        }
+        None
     }
 }
 
@@ -184,20 +129,10 @@ impl<'a> Mesh<'a> {
     }
 
     const fn try_from(vertices: &'a [Vertex], triangles: Triangles<'a>) -> Result<Self, MeshError> {
-        let mut triangle = 0;
-        while triangle < triangles.len() {
-            let corners = triangles.at(triangle);
-            let mut corner = 0;
-            while corner < 3 {
-                let index = corners[corner];
-                if index as usize >= vertices.len() {
-                    return Err(MeshError { triangle, index });
-                }
-                corner += 1;
-            }
-            triangle += 1;
+        match triangles.first_bad(vertices.len()) {
+            Some(error) => Err(error),
+            None => Ok(Self { vertices, triangles, bounds: Bounds::new(vertices) }),
         }
-        Ok(Self { vertices, triangles, bounds: Bounds::new(vertices) })
     }
 
     /// The triangles `start` … `end` − 1 alone (as far as there are such): a mesh with several materials is drawn
@@ -258,35 +193,45 @@ const fn checked(mesh: Result<Mesh<'_>, MeshError>) -> Mesh<'_> {
 
 impl Bounds {
     /// The sphere around the middle of the bounding box, its radius rounded up.
+    ///
+    /// Eight calls and turns of loops a vertex, of those two million; straight on, which the compiler's interpreter does in half
+    /// the time that loops over the axes take.
     const fn new(vertices: &[Vertex]) -> Self {
-        let mut center = [I4F12::ZERO; 3];
-        let mut axis = 0;
-        while axis < 3 {
-            let (mut low, mut high) = (i16::MAX, i16::MIN);
-            let mut i = 0;
-            while i < vertices.len() {
-                let at = vertices[i].position[axis].to_bits();
-                low = if at < low { at } else { low };
-                high = if at > high { at } else { high };
-                i += 1;
-            }
-            center[axis] = I4F12::from_bits(((low as i32 + high as i32) / 2) as i16);
-            axis += 1;
+        let count = vertices.len();
+        let (mut low_x, mut low_y, mut low_z) = (i16::MAX, i16::MAX, i16::MAX);
+        let (mut high_x, mut high_y, mut high_z) = (i16::MIN, i16::MIN, i16::MIN);
+        let mut i = 0;
+        while i < count {
+            let [x, y, z] = vertices[i].position;
+            let (x, y, z) = (x.to_bits(), y.to_bits(), z.to_bits());
+            low_x = if x < low_x { x } else { low_x };
+            low_y = if y < low_y { y } else { low_y };
+            low_z = if z < low_z { z } else { low_z };
+            high_x = if x > high_x { x } else { high_x };
+            high_y = if y > high_y { y } else { high_y };
+            high_z = if z > high_z { z } else { high_z };
+            i += 1;
         }
+        let center_x = (low_x as i32 + high_x as i32) / 2;
+        let center_y = (low_y as i32 + high_y as i32) / 2;
+        let center_z = (low_z as i32 + high_z as i32) / 2;
         let mut most = 0;
         let mut i = 0;
-        while i < vertices.len() {
-            let mut squares = 0u64;
-            let mut axis = 0;
-            while axis < 3 {
-                let d = (vertices[i].position[axis].to_bits() as i32 - center[axis].to_bits() as i32)
-                    .unsigned_abs() as u64;
-                squares += d * d;
-                axis += 1;
-            }
+        while i < count {
+            let [x, y, z] = vertices[i].position;
+            // Up to 2¹⁶, and so 3 · 2³².
+            let x = (x.to_bits() as i32 - center_x) as i64;
+            let y = (y.to_bits() as i32 - center_y) as i64;
+            let z = (z.to_bits() as i32 - center_z) as i64;
+            let squares = (x * x + y * y + z * z) as u64;
             most = if squares > most { squares } else { most };
             i += 1;
         }
+        let center = [
+            I4F12::from_bits(center_x as i16),
+            I4F12::from_bits(center_y as i16),
+            I4F12::from_bits(center_z as i16),
+        ];
         Self { center, radius: most.isqrt() as i32 + 1 }
     }
 }

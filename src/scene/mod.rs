@@ -1,15 +1,21 @@
 //! What a user describes: meshes, textures, lights, a camera. Nothing here knows a pixel in memory.
 
 mod camera;
+mod lens_error;
 mod light;
 mod mesh;
 mod projection;
 pub mod shapes;
 mod texture;
+mod vertex;
+mod vertex_error;
 
 pub use camera::Camera;
+pub use lens_error::LensError;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub(crate) use mesh::Bounds;
-pub use mesh::{Mesh, MeshError, Vertex};
+pub use mesh::{Mesh, MeshError};
 pub(crate) use projection::{Projection, Viewport};
 pub use texture::{Texture, TextureError, Wrap, texels};
+pub use vertex::Vertex;
+pub use vertex_error::VertexError;

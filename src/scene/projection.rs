@@ -30,6 +30,7 @@ pub(crate) struct Viewport {
 
 const MIN_FOCAL: i32 = 1 << 12;
 const MAX_FOCAL: i32 = 8191 << 16;
+const MAX_SIDE: u32 = 1023;
 
 impl Projection {
     pub(crate) const fn new(focal: i64, orthographic: bool, size: Size) -> Self {
@@ -51,6 +52,16 @@ impl Projection {
         }
     }
 
+    /// Whether [`Projection::new`] limits a focal length.
+    pub(crate) const fn limits_focal(focal: i64) -> bool {
+        focal < MIN_FOCAL as i64 || focal > MAX_FOCAL as i64
+    }
+
+    /// Whether [`Projection::new`] limits the size of a screen.
+    pub(crate) const fn limits_size(size: Size) -> bool {
+        size.width > MAX_SIDE || size.height > MAX_SIDE
+    }
+
     /// Moves the viewport's corner, and the line of sight with it.
     pub(crate) const fn moved_to(mut self, left: i32, top: i32) -> Self {
         let (left, top) = (clamped(left, 1023) as i16, clamped(top, 1023) as i16);
@@ -63,7 +74,7 @@ impl Projection {
 }
 
 pub(crate) const fn limited(side: u32) -> i16 {
-    if side > 1023 { 1023 } else { side as i16 }
+    if side > MAX_SIDE { MAX_SIDE as i16 } else { side as i16 }
 }
 
 pub(crate) const fn clamped(value: i32, most: i32) -> i32 {

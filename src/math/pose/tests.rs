@@ -151,6 +151,27 @@ fn inverse_undoes_within_its_bounds_in_20_000_cases() {
 }
 
 #[test]
+fn a_scale_out_of_range_is_a_typed_error_and_panics_elsewhere() {
+    // Steps of 2⁻²²; 600 was 512 once.
+    for (good, bits) in
+        [(0.0, 0), (-0.0, 0), (1.0, 1 << 22), (600.0, 600 << 22), (1e-3, 4194), (1023.5, 2047 << 21)]
+    {
+        assert_eq!(Pose::IDENTITY.scaled_lit(good), Pose::IDENTITY.scaled(U10F22::from_bits(bits)));
+        assert_eq!(Pose::IDENTITY.try_scaled_lit(good), Ok(Pose::IDENTITY.scaled_lit(good)));
+    }
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1024.0, 5000.0, -1.0, -1e-6] {
+        let error = Pose::IDENTITY.try_scaled_lit(bad).expect_err("it does not fit");
+        assert_eq!(error.scale.to_bits(), bad.to_bits());
+        assert!(std::panic::catch_unwind(|| Pose::IDENTITY.scaled_lit(bad)).is_err());
+    }
+    let error = Pose::IDENTITY.try_scaled_lit(5000.0).unwrap_err();
+    assert_eq!(
+        std::string::ToString::to_string(&error),
+        "the scale of a pose is not a number of 0 or more and below 1024: 5000"
+    );
+}
+
+#[test]
 fn scales_without_a_reciprocal_saturate() {
     for (scale, back) in
         [(0, u32::MAX), (1, u32::MAX), (1 << 12, u32::MAX), (4097, 4_293_918_976), (u32::MAX, 1 << 12)]

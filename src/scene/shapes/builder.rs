@@ -22,15 +22,13 @@ impl<const V: usize, const T: usize> Builder<V, T> {
     }
 
     pub(super) const fn vertex(&mut self, place: [f64; 3], normal: [f64; 3], [u, v]: [I12F4; 2]) {
-        let mut i = 0;
-        while i < 3 {
-            assert!(place[i] >= -8.0 && place[i] < 7.9999, "a vertex of the shape is not within −8 … 7.9998");
-            i += 1;
-        }
         self.shape.vertices[self.next_vertex] =
-            Vertex::new(place[0] as f32, place[1] as f32, place[2] as f32)
-                .normal(normal[0] as f32, normal[1] as f32, normal[2] as f32)
-                .uv_sixteenths(u, v);
+            match Vertex::try_new(place[0] as f32, place[1] as f32, place[2] as f32) {
+                Ok(vertex) => {
+                    vertex.normal(normal[0] as f32, normal[1] as f32, normal[2] as f32).uv_sixteenths(u, v)
+                }
+                Err(_) => panic!("a vertex of the shape is not within −8 … 7.9998"),
+            };
         self.next_vertex += 1;
     }
 

@@ -31,6 +31,9 @@
 //! left to right seen from outside; the parameter `texels` says how many of them, 0 … 2047, go across and
 //! down: the texture's size, times how often it is to be repeated.
 //!
+//! A shape of 65 535 triangles compiles in some seconds. One of about twice as many is a constant that takes the compiler too long,
+//! unless it is told to `allow(long_running_const_eval)`.
+//!
 //! # Panics
 //!
 //! All functions here are meant for `const` and `static`, where a parameter that makes no such shape, or
