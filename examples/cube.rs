@@ -107,7 +107,6 @@ impl Scene {
     ) -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         band.clear(NIGHT)?;
-        band.clear_depth();
         times.clear += start.elapsed();
 
         let start = Instant::now();

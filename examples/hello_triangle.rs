@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let camera = Camera::perspective(Turn::from_degrees(60), band.size()).at(Vec3::lit(0.0, 0.0, 2.5));
     let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(50));
+    band.clear(Rgb565::BLACK)?; // a new picture: colours and depth
     camera.draw(&TRIANGLE, &pose, &Material::textured(&CHECKS), &mut band);
 
     let gold = MonoTextStyle::new(&FONT_6X10, Rgb565::CSS_GOLD);

@@ -12,13 +12,16 @@ use fixel::embedded_graphics::image::GetPixel;
 use fixel::embedded_graphics::mock_display::MockDisplay;
 use fixel::embedded_graphics::mono_font::MonoTextStyleBuilder;
 use fixel::embedded_graphics::mono_font::ascii::{FONT_4X6, FONT_6X10};
-use fixel::embedded_graphics::pixelcolor::{IntoStorage, Rgb565};
+use fixel::embedded_graphics::pixelcolor::{IntoStorage, Rgb565, Rgb888};
 use fixel::embedded_graphics::prelude::*;
 use fixel::embedded_graphics::primitives::{
     Arc, Circle, Ellipse, Line, PrimitiveStyle, PrimitiveStyleBuilder, Rectangle, RoundedRectangle, Triangle,
 };
 use fixel::embedded_graphics::text::Text;
-use fixel::{Band, BigEndian, Depth16, DepthFormat, NoDepth, PixelFormat, TargetError};
+use fixel::{
+    Band, BigEndian, Camera, Depth16, DepthFormat, Material, Mesh, NoDepth, PixelFormat, Pose, TargetError,
+    Turn, Vec3, Vertex,
+};
 use proptest::prelude::*;
 
 /// The side of embedded-graphics' mock display.
@@ -317,7 +320,6 @@ fn in_10_000_sizes_and_slices_a_band_is_made_or_a_typed_error() {
         let band = Band::<Rgb565, Depth16>::new(Size::new(width, height), &mut words.0, &mut words.1);
         let made = band.map(|mut band| {
             let Ok(()) = band.clear(Rgb565::WHITE);
-            band.clear_depth();
         });
         prop_assert_eq!(made, expected, "{} × {} with {} pixels, {} depths", width, height, pixels, depth);
         // What is more than the band needs is left alone, and all of it where there is no band.
@@ -353,6 +355,72 @@ fn nothing_and_one_pixel_are_targets_too() {
     assert_eq!(band.pixel(Point::new(0, 0)), None);
     assert_eq!(band.as_bytes(), [0xf8, 0x00]);
     assert_eq!(depth, [0]);
+}
+
+/// What a band shows and its depths after the front page's triangle, turned by so many degrees, was drawn to it.
+fn turned_triangle(band: &mut Band<'_, Rgb565, Depth16>, degrees: i32) -> (Vec<u16>, Vec<u16>) {
+    const TRIANGLE: Mesh = Mesh::new(
+        &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+        &[[0, 1, 2]],
+    );
+    let camera = Camera::perspective(Turn::from_degrees(60), band.size()).at(Vec3::lit(0.0, 0.0, 2.5));
+    let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(degrees));
+    camera.draw(&TRIANGLE, &pose, &Material::flat(Rgb565::RED), band);
+    (band.pixels().to_vec(), band.depth().to_vec())
+}
+
+const SCREEN: Size = Size::new(240, 240);
+const AREA: usize = 240 * 240;
+
+#[test]
+fn clear_begins_a_new_picture_in_every_frame() {
+    let drawn = |pixels: &[u16]| pixels.iter().filter(|&&word| word == Rgb565::RED.into_storage()).count();
+    let (mut pixels, mut depth) = (vec![0; AREA], vec![0; AREA]);
+    let mut band = Band::<Rgb565, Depth16>::new(SCREEN, &mut pixels, &mut depth).expect("they fit");
+    for degrees in [50, 60, 70] {
+        let Ok(()) = band.clear(Rgb565::BLUE);
+        let found = turned_triangle(&mut band, degrees);
+        // What memory shows that nothing was ever drawn to.
+        let (mut pixels, mut depth) = (vec![Rgb565::BLUE.into_storage(); AREA], vec![0; AREA]);
+        let mut fresh = Band::new(SCREEN, &mut pixels, &mut depth).expect("they fit");
+        let expected = turned_triangle(&mut fresh, degrees);
+        assert_eq!(drawn(&found.0), drawn(&expected.0), "pixels of the triangle, turned by {degrees}°");
+        assert!(found == expected);
+    }
+    // So it does through a target that only moves or converts.
+    for wrapped in [true, false] {
+        let Ok(()) = if wrapped {
+            band.translated(Point::new(7, -9)).clear(Rgb565::BLUE)
+        } else {
+            band.color_converted::<Rgb888>().clear(Rgb888::BLUE)
+        };
+        assert!(band.pixels().iter().all(|&word| word == Rgb565::BLUE.into_storage()));
+        assert!(band.depth().iter().all(|&depth| depth == 0));
+        turned_triangle(&mut band, 50);
+    }
+}
+
+#[test]
+fn fills_and_clears_of_a_part_keep_depth() {
+    let (mut pixels, mut depth) = (vec![0; AREA], vec![0; AREA]);
+    let mut band = Band::<Rgb565, Depth16>::new(SCREEN, &mut pixels, &mut depth).expect("they fit");
+    let (_, depth) = turned_triangle(&mut band, 50);
+    let inside = Rectangle::new(Point::new(100, 90), Size::new(30, 40));
+    let all = band.bounding_box();
+    let Ok(()) = band.fill_solid(&all, Rgb565::BLUE);
+    assert_eq!(band.depth(), depth, "fill_solid");
+    let Ok(()) = band.clipped(&inside).clear(Rgb565::GREEN);
+    assert_eq!(band.depth(), depth, "clear of a clipped target");
+    let Ok(()) = band.cropped(&Rectangle::new(inside.top_left, Size::new(30, 20))).clear(Rgb565::RED);
+    assert_eq!(band.depth(), depth, "clear of a cropped target");
+    for point in all.points() {
+        let expected = match (inside.contains(point), point.y < 110) {
+            (false, _) => Rgb565::BLUE,
+            (true, false) => Rgb565::GREEN,
+            (true, true) => Rgb565::RED,
+        };
+        assert_eq!(band.pixel(point), Some(expected), "{point}");
+    }
 }
 
 #[test]

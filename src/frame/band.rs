@@ -10,15 +10,16 @@ use embedded_graphics::geometry::Size;
 /// A strip of rows of a screen, or the whole screen, in memory that the user owns.
 ///
 /// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen: what lies
-/// outside its rows is left out. Its contents are as they were given: clear them first. To send
-/// one band by DMA while another is drawn, see [`Band::swap_pixels`].
+/// outside its rows is left out. Its contents are as they were given: begin each picture with
+/// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a part,
+/// of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by DMA
+/// while another is drawn, see [`Band::swap_pixels`].
 ///
 /// ```
 /// use fixel::{Band, Depth16};
 /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 /// let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
 /// let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?.starting_at(32);
-/// band.clear_depth();
 /// let Ok(()) = band.clear(Rgb565::BLUE);
 /// assert_eq!(band.bounding_box().top_left, Point::new(0, 32));
 /// # Ok::<(), fixel::TargetError>(())
@@ -81,7 +82,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         Size::new(self.width as u32, self.height as u32)
     }
 
-    /// Forgets all depths, so that whatever is drawn next is seen.
+    /// Forgets all depths, so that whatever is drawn next is seen; the pixels stay.
     pub fn clear_depth(&mut self) {
         D::clear(self.depth);
     }
@@ -149,7 +150,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     }
 
     /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
-    /// anew. The depth stays; [`Band::clear_to`] clears it.
+    /// anew. The depth stays, as do the pixels of the other memory: [`Band::clear_to`] and `clear` begin anew.
     ///
     /// A band of static memory gives and takes `&'static mut [u16]`, which a channel may own until it is done. As bytes in
     /// [`BigEndian`](super::BigEndian) order they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.

@@ -106,8 +106,14 @@ impl<F: PixelFormat, D: DepthFormat> DrawTarget for Band<'_, F, D> {
         Ok(())
     }
 
+    /// Begins a new picture: all pixels have this colour, and all depths are forgotten.
+    ///
+    /// `fill_solid` colours an area and keeps its depth, and so does the `clear` of a part: of what
+    /// [`clipped`](embedded_graphics::draw_target::DrawTargetExt::clipped) and
+    /// [`cropped`](embedded_graphics::draw_target::DrawTargetExt::cropped) return, which embedded-graphics makes a `fill_solid`.
     fn clear(&mut self, color: F::Color) -> Result<(), Infallible> {
         self.pixels.fill(F::encode(color));
+        self.clear_depth();
         Ok(())
     }
 }

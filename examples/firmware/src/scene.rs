@@ -127,7 +127,6 @@ impl Scene {
     /// Draws the rows of frame `frame` that the strip holds.
     pub fn draw(&self, frame: u32, strip: &mut Strip<'_>) {
         let Ok(()) = strip.clear(SKY);
-        strip.clear_depth();
         for (mesh, pose, material) in things(frame) {
             self.camera.draw(mesh, &pose, material, strip);
         }
