@@ -18,8 +18,11 @@
 
 pub use fixed::types::{I2F14, I2F30, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 
-/// No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps.
-const IS_ARMV6M: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+/// Whether arithmetic is done as Armv6-M needs it, which has no 32 × 32 → 64 multiply and cannot count zeros.
+///
+/// No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps. `RUSTFLAGS="--cfg fixel_armv6m"` asks for
+/// the same arithmetic on any other machine, so that the tests can hold it there.
+const IS_ARMV6M: bool = cfg!(any(fixel_armv6m, all(target_arch = "arm", not(target_has_atomic = "32"))));
 
 /// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
 ///
@@ -44,9 +47,13 @@ const fn wide_split(a: i32, b: i32) -> i64 {
     ((high as i64) << 32) | low as i64
 }
 
+// The short products below have operands of limited range, which debug builds check on every machine: beyond it the shorter
+// arithmetic of Armv6-M would overflow.
+
 /// `a · b / 2¹⁶` rounded down, for a `b` of 0 … 2¹⁶: two short products on Armv6-M.
 #[inline]
 pub(crate) const fn mul_16(a: i32, b: u32) -> i32 {
+    debug_assert!(b <= 1 << 16);
     if IS_ARMV6M { mul_16_split(a, b) } else { ((a as i64 * b as i32 as i64) >> 16) as i32 }
 }
 
@@ -55,7 +62,7 @@ const fn mul_16_split(a: i32, b: u32) -> i32 {
     (a >> 16) * b as i32 + (((a as u32 & 0xffff) * b) >> 16) as i32
 }
 
-/// `a · b / 2¹⁶` rounded down, for a `b` of −2¹⁵ … 2¹⁵ − 1: likewise. Beyond that some number.
+/// `a · b / 2¹⁶` rounded down, for a `b` of −2¹⁵ … 2¹⁵ − 1: likewise. Beyond that some number, the same on every machine.
 #[inline]
 pub(crate) const fn mul_16_signed(a: i32, b: i32) -> i32 {
     if IS_ARMV6M {
@@ -70,9 +77,10 @@ const fn mul_16_signed_split(a: i32, b: i32) -> i32 {
     (a >> 16) * b + (((a & 0xffff) * b) >> 16)
 }
 
-/// `a · b / 2¹⁶` rounded down, for an even part of `a` within ±2³⁰ and a `b` of 0 … 2¹⁷: likewise.
+/// `a · b / 2¹⁶` rounded down, for the even part of an `a` of −2³⁰ … 2³⁰ − 1 and a `b` of 0 … 2¹⁷: likewise.
 #[inline]
 pub(crate) const fn mul_17(a: i32, b: u32) -> i32 {
+    debug_assert!(-1 << 30 <= a && a < 1 << 30 && b <= 1 << 17);
     if IS_ARMV6M { mul_17_split(a, b) } else { (((a & !1) as i64 * b as i32 as i64) >> 16) as i32 }
 }
 
@@ -96,6 +104,7 @@ pub(crate) const fn mul_high(a: i32, b: i32) -> i32 {
 /// The upper 32 bits of `a · b` for a `b` of 0 … 2³¹, or up to 2 less: three short products on Armv6-M.
 #[inline]
 pub(crate) const fn mul_high_short(a: i32, b: u32) -> i32 {
+    debug_assert!(b <= 1 << 31);
     mul_16(a, b >> 16) + (((a >> 16) * (b & 0xffff) as i32) >> 16)
 }
 

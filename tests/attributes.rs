@@ -14,10 +14,10 @@ use std::fmt;
 
 use common::generate::GUARD_BAND;
 use common::perspective::{Case, FAMILIES, RATIOS, any_case, case, mesh_case};
-use common::{Canvas, Drawn, Record, Recorder, Recording, cases, for_all};
+use common::{Canvas, Drawn, Record, Recorder, Recording, Strip, cases, for_all};
 use fixel::{Affine, Cull, Depth16, Exact, Inputs, Quality, QuarterPixel};
 use proptest::prelude::*;
-use reference::{ATTRIBUTES, UNIT};
+use reference::{ATTRIBUTES, Corner, Triangle, UNIT};
 
 /// The largest errors met.
 #[derive(Clone, Copy, Debug, Default)]
@@ -325,4 +325,48 @@ fn exact_holds_for_30_000_triangles_of_a_mesh() {
 #[test]
 fn quarter_pixel_holds_for_30_000_triangles_of_a_mesh() {
     hold_in_meshes::<QuarterPixel>("QuarterPixel", 0.25);
+}
+
+/// Rows of few pixels at one distance each, across which all texels there are go by: a wall's far end, seen from its side.
+fn steep_and_level() -> impl Strategy<Value = Case> {
+    let widths = prop_oneof![2 => 8..48_i32, 1 => 8..400_i32];
+    let places = ((0..600_i32, 0..400_i32, -2..=2_i32), (0..640_i32, -8000..8000_i32), widths);
+    let q = (12..31_u32, 0.0..1.0_f64, 0.0..4.0_f64);
+    let limit = 8192 << 16;
+    let end = move || prop_oneof![2 => Just(limit), 1 => limit / 2..=limit];
+    let texels = (end(), end(), -limit / 4..=limit / 4, any::<bool>());
+    (places, q, texels).prop_map(|(((x, y, tilt), (top_x, above), width), (size, part, fall), texels)| {
+        let near = ((1.0 + part) * f64::from(1_u32 << size)).min(2_f64.powi(31) - 1.0);
+        let far = (near * (-fall).exp2()).max(1.0);
+        let (left, right, middle, turned) = texels;
+        let (left, right) = if turned { (left, -right) } else { (-left, right) };
+        let corner =
+            |x: i32, y: i32, q: f64, u: i32| Corner { x, y, q: q as u32, attributes: [u, -u, 0, 0, 0] };
+        let triangle = Triangle([
+            corner(top_x, y - above, near, middle),
+            corner(x, y, far, left),
+            corner(x + width, y + tilt, far, right),
+        ]);
+        Case { strip: Strip::new(40, 28, 0), triangle, inputs: Inputs::Uv, hidden: 0 }
+    })
+}
+
+fn hold_where_rows_are_steep<Q: Quality>(name: &str, bound: f64) {
+    let total = RefCell::new(Worst::default());
+    for_all(&format!("{name}, steep rows"), 20_000, steep_and_level(), |case| {
+        total.borrow_mut().join(measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?);
+        Ok(())
+    });
+    let total = total.into_inner();
+    println!("{name}, steep rows: {total} over {} pixels", total.pixels);
+}
+
+#[test]
+fn quarter_pixel_holds_where_a_row_has_all_texels_20_000_cases() {
+    hold_where_rows_are_steep::<QuarterPixel>("QuarterPixel", 0.25);
+}
+
+#[test]
+fn exact_holds_where_a_row_has_all_texels_20_000_cases() {
+    hold_where_rows_are_steep::<Exact>("Exact", 0.02);
 }

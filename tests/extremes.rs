@@ -205,3 +205,25 @@ fn every_mesh_pose_camera_and_target_at_its_extremes_72_576_combinations() {
     println!("extremes: {drawn} combinations, {seen} of them with a pixel");
     assert!(drawn == 72_576 && seen > 800);
 }
+
+/// The unit of clip space follows from the matrix, the radius of a mesh's bounds from the scale alone: here they are as far apart as
+/// they can be, and so is the focal length.
+#[test]
+fn a_matrix_of_nothing_at_the_largest_scale_and_focal_length_draws_nothing() {
+    let ends = vertices(&[[-8.0, -8.0, -8.0], [7.999_756, 7.999_756, 7.999_756], [-8.0, 7.999_756, 0.0]]);
+    let mesh = Mesh::try_new(&ends, &[[0, 1, 2]]).expect("the indices are in range");
+    let nothing = [[I2F14::ZERO; 3]; 3];
+    let size = Size::new(24, 20);
+    let stood = Pose::IDENTITY.scaled(U10F22::MAX);
+    let camera = Camera::focal(f32::INFINITY, size);
+    for (camera, pose) in [
+        (camera, Pose { rotation: nothing, ..stood }),
+        (camera.pose(Pose { rotation: nothing, ..stood }), stood),
+        (Camera::orthographic(f32::INFINITY, size), Pose { rotation: nothing, ..stood }),
+    ] {
+        let (mut pixels, mut depth) = ([0x1234; 24 * 20], [0; 24 * 20]);
+        let mut band = Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth).expect("large enough");
+        camera.draw(&mesh, &pose, &Material::gouraud().cull(Cull::None), &mut band);
+        assert!(pixels.iter().all(|word| *word == 0x1234) && depth.iter().all(|depth| *depth == 0));
+    }
+}

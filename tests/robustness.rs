@@ -11,9 +11,9 @@ use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 use fixel::{
-    Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, Exact, Inputs, Lights, Material, Mesh,
-    MeshError, NoDepth, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, Shader, Texture,
-    Turn, Vec3, Vertex, Wrap,
+    Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, DisplayList, Exact, Inputs, Light, Lights,
+    Material, Mesh, MeshError, NoDepth, PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel,
+    RangeError, ScreenVertex, Shader, Texture, Turn, Vec3, Vertex, Wrap,
 };
 use proptest::prelude::*;
 use reference::{Corner, Triangle};
@@ -491,4 +491,322 @@ fn a_canvas_of_nothing_takes_a_triangle() {
     canvas
         .draw::<Recording, Depth16, _>(&triangle, Cull::None, &Recorder::<Exact>::new(Inputs::Uv))
         .expect("the triangle is within range");
+}
+
+// What could overflow. Numbers of all orders of magnitude: terms that cancel, nearly cancel, or meet at the end of a format are
+// far more frequent than chance would have them. Nothing is asked of the picture here, so that there can be many cases; they
+// are run with the arithmetic of Armv6-M too (`--cfg fixel_armv6m`, see src/num.rs).
+
+/// Of either sign, as many numbers below 2 as from there to 4, from there to 8, and so on up to `limit`; and its ends.
+fn of_any_size(limit: i32) -> impl Strategy<Value = i32> + Clone {
+    let bits = 32 - limit.leading_zeros();
+    let value = (0..=bits, any::<u32>(), any::<bool>()).prop_map(move |(size, bits, negative)| {
+        let value = (((1_u64 << size) - 1) as u32 & (bits | 1 << (size.max(1) - 1))).min(limit as u32) as i32;
+        if negative { -value } else { value }
+    });
+    prop_oneof![6 => value, 1 => Just(0), 1 => Just(limit), 1 => Just(-limit)]
+}
+
+/// A part of a screen, and a triangle in or around it.
+fn triangle_of_any_size() -> BoxedStrategy<((Strip, u32), [ScreenVertex; 3])> {
+    let sizes = prop_oneof![6 => (1..=48_u32, 1..=24_u32), 1 => (Just(1023), 1..=2_u32)];
+    let first = (sizes, 0..=1000_u32).prop_flat_map(|((width, height), row)| {
+        let strip = Strip::new(width, height, row.min(1023 - height));
+        (Just(strip), common::generate::place(strip, 100))
+    });
+    let sides = [of_any_size(0x7fff), of_any_size(0x7fff), of_any_size(0x7fff), of_any_size(0x7fff)];
+    let nearest =
+        (0..32_u32, any::<u32>()).prop_map(|(size, bits)| (1_u64 << size) as u32 | bits >> (31 - size));
+    let falls = || prop_oneof![1 => Just(0), 2 => of_any_size(i32::MAX), 1 => any::<i32>()];
+    let texel = || of_any_size(8192 << 16);
+    let texels = [[texel(), texel()], [texel(), texel()], [texel(), texel()]];
+    let channel = || prop_oneof![2 => any::<u16>(), 1 => Just(0), 1 => Just(u16::MAX)];
+    let color = || [channel(), channel(), channel()];
+    (first, sides, (nearest, [falls(), falls()]), texels, [color(), color(), color()])
+        .prop_map(|((strip, (x, y)), [bx, by, cx, cy], (q, falls), texels, colors)| {
+            let fallen = falls.map(|fall| q.saturating_sub(fall.unsigned_abs()));
+            let vertex = |i: usize| {
+                let [x, y] = [[x, y], [x + bx, y + by], [x + cx, y + cy]][i]
+                    .map(|at| at.clamp(*GUARD_BAND.start(), *GUARD_BAND.end()) as i16);
+                ScreenVertex {
+                    x: I12F4::from_bits(x),
+                    y: I12F4::from_bits(y),
+                    q: U1F31::from_bits([q, fallen[0], fallen[1]][i]),
+                    u: I16F16::from_bits(texels[i][0]),
+                    v: I16F16::from_bits(texels[i][1]),
+                    color: colors[i].map(U8F8::from_bits),
+                }
+            };
+            ((strip, strip.row), [0, 1, 2].map(vertex))
+        })
+        .boxed()
+}
+
+/// Every loop that there is: one of 14 surfaces.
+fn surface<'a>(kind: u8, texture: &Texture<'a>, lights: &'a Lights<'a>) -> Material<'a> {
+    let clamped = texture.wrap(Wrap::Clamp);
+    match kind {
+        0 => Material::flat(Rgb565::MAGENTA),
+        1 => Material::gouraud(),
+        2 => Material::gouraud().lit(lights).faceted(),
+        3 => Material::flat(Rgb565::YELLOW).lit(lights).two_sided(),
+        4 => Material::textured(&clamped),
+        5 => Material::textured(&clamped).lit(lights),
+        6 => Material::textured(texture).lit(lights).two_sided().texture_scale(3),
+        7 => Material::textured(texture).lit(lights).faceted().texture_scale(8),
+        8 => Material::textured(texture).lit(lights),
+        kind => Material::textured(texture).texture_scale([0, 1, 5, 8, u8::MAX][usize::from(kind) % 5]),
+    }
+}
+
+const SURFACES: u8 = 14;
+/// log₂ of the sides of textures: those for which there is a loop, others, and one that is not packed.
+const TEXTURES: [(u32, u32); 8] = [(6, 6), (5, 5), (0, 0), (8, 8), (10, 6), (3, 5), (1, 8), (4, 8)];
+
+fn overflows_nowhere<Q: Quality>(
+    target: (Strip, u32),
+    vertices: &[ScreenVertex; 3],
+    material: &Material<'_, Q>,
+    with_depth: bool,
+) -> Result<(), TestCaseError> {
+    let (result, pixels) = if with_depth {
+        let (result, pixels, _) =
+            draw::<Rgb565, Depth16, _>(target, (0x1234, 0), vertices, Cull::None, material);
+        (result, pixels)
+    } else {
+        let (result, pixels, _) =
+            draw::<Rgb565, NoDepth, _>(target, (0x1234, ()), vertices, Cull::None, material);
+        (result, pixels)
+    };
+    prop_assert!(result.is_ok());
+    prop_assert!(pixels[target.0.len()..].iter().all(|word| *word == 0x1234), "pixels past the target");
+    Ok(())
+}
+
+#[test]
+fn triangles_of_numbers_of_all_sizes_overflow_nowhere_200_000_cases() {
+    let texels: Vec<u16> = (0..=u16::MAX).collect();
+    let lights = Lights::new([255; 3], &[]);
+    let how = (0..SURFACES, 0..TEXTURES.len(), 0..3_u8, any::<bool>(), any::<bool>());
+    let cases = (triangle_of_any_size(), how);
+    for_all("triangles of numbers of all sizes", 200_000, cases, |((target, mut vertices), how)| {
+        let (kind, size, quality, gray, with_depth) = how;
+        let (width, height) = TEXTURES[size];
+        let texture = Texture::new(&texels[..1 << (width + height)], width, height);
+        if gray {
+            vertices.iter_mut().for_each(|vertex| vertex.color = [vertex.color[0]; 3]);
+        }
+        let material = surface(kind, &texture, &lights);
+        match quality {
+            0 | 1 => overflows_nowhere(target, &vertices, &material, with_depth),
+            2 if gray => overflows_nowhere(target, &vertices, &material.affine(), with_depth),
+            _ => overflows_nowhere(target, &vertices, &material.exact(), with_depth),
+        }
+    });
+}
+
+/// An `f32` of any size, as [`of_any_size`].
+fn number_of_any_size() -> BoxedStrategy<f32> {
+    prop_oneof![
+        4 => of_any_size(i32::MAX).prop_map(|bits| bits as f32 / 65536.0),
+        2 => of_any_size(16 << 16).prop_map(|bits| bits as f32 / 65536.0),
+        1 => number(),
+    ]
+    .boxed()
+}
+
+fn vec3_of_any_size() -> BoxedStrategy<Vec3> {
+    let bits = || prop_oneof![4 => of_any_size(i32::MAX), 2 => of_any_size(20 << 16), 1 => Just(i32::MIN)];
+    [bits(), bits(), bits()]
+        .prop_map(|bits| bits.map(I16F16::from_bits))
+        .prop_map(|[x, y, z]| Vec3::new(x, y, z))
+        .boxed()
+}
+
+fn pose_of_any_size() -> BoxedStrategy<Pose> {
+    let element = || prop_oneof![3 => of_any_size(0x7fff), 1 => Just(0), 1 => Just(i32::from(i16::MIN)), 1 => Just(1 << 14)];
+    let row = || [element(), element(), element()];
+    let matrix =
+        [row(), row(), row()].prop_map(|rows| rows.map(|row| row.map(|bits| I2F14::from_bits(bits as i16))));
+    let rotation = prop_oneof![
+        6 => turned().prop_map(|pose| pose.rotation),
+        2 => matrix,
+        1 => Just([[I2F14::ZERO; 3]; 3]),
+    ];
+    let scale = prop_oneof![
+        4 => Just(U10F22::ONE),
+        2 => of_any_size(i32::MAX).prop_map(|bits| U10F22::from_bits(bits.unsigned_abs())),
+        1 => Just(U10F22::MAX),
+        1 => any::<u32>().prop_map(U10F22::from_bits),
+    ];
+    let before =
+        of_any_size(8 << 16).prop_map(|z| Vec3::new(I16F16::ZERO, I16F16::ZERO, I16F16::from_bits(-z.abs())));
+    let translation = prop_oneof![1 => vec3_of_any_size(), 3 => before];
+    (rotation, scale, translation)
+        .prop_map(|(rotation, scale, translation)| Pose { rotation, scale, translation })
+        .boxed()
+}
+
+fn camera_of_any_size(width: u32, height: u32) -> BoxedStrategy<Camera> {
+    let size = Size::new(width, height);
+    let lens = prop_oneof![
+        4 => (1..180_i32).prop_map(move |vertical| Camera::perspective(Turn::from_degrees(vertical), size)),
+        2 => number_of_any_size().prop_map(move |focal| Camera::focal(focal, size)),
+        2 => number_of_any_size().prop_map(move |pixels| Camera::orthographic(pixels, size)),
+    ];
+    let planes = (
+        prop::option::weighted(0.3, number_of_any_size()),
+        prop::option::weighted(0.2, number_of_any_size()),
+    );
+    let axis = || of_any_size(0x7fff).prop_map(|bits| I12F4::from_bits(bits as i16));
+    let off_axis = prop::option::weighted(0.3, (axis(), axis()));
+    let viewport = prop::option::weighted(0.2, (of_any_size(i32::MAX), of_any_size(i32::MAX)));
+    let pose = prop::option::weighted(0.2, pose_of_any_size());
+    (lens, planes, off_axis, viewport, pose)
+        .prop_map(|(mut camera, (near, far), off_axis, viewport, pose)| {
+            camera = near.map_or(camera, |near| camera.near(near));
+            camera = far.map_or(camera, |far| camera.far(far));
+            camera = viewport.map_or(camera, |(left, top)| camera.viewport(Point::new(left, top)));
+            camera = off_axis.map_or(camera, |(right, down)| camera.off_axis(right, down));
+            pose.map_or(camera, |pose| camera.pose(pose))
+        })
+        .boxed()
+}
+
+fn lights_of_any_size() -> BoxedStrategy<Vec<Light>> {
+    let light = prop_oneof![
+        (vec3_of_any_size(), any::<[u8; 3]>())
+            .prop_map(|(direction, color)| Light::directional(direction, color)),
+        (vec3_of_any_size(), any::<[u8; 3]>(), of_any_size(i32::MAX))
+            .prop_map(|(place, color, range)| Light::point(place, color, I16F16::from_bits(range))),
+    ];
+    prop::collection::vec(light, 0..=Lights::MAX).boxed()
+}
+
+fn vertex_of_any_size() -> BoxedStrategy<Vertex> {
+    let bits = || {
+        prop_oneof![3 => of_any_size(0x7fff), 3 => -0x7fff..=0x7fff_i32, 1 => Just(i32::from(i16::MIN))]
+            .prop_map(|bits| bits as i16)
+    };
+    ([bits(), bits(), bits()], [bits(), bits()], any::<[u8; 3]>(), any::<[i8; 3]>())
+        .prop_map(|(position, uv, color, normal)| Vertex {
+            position: position.map(I4F12::from_bits),
+            uv: uv.map(I12F4::from_bits),
+            color,
+            normal,
+        })
+        .boxed()
+}
+
+/// A display that counts the colours it is handed.
+struct Counter(Size, u32);
+
+impl OriginDimensions for Counter {
+    fn size(&self) -> Size {
+        self.0
+    }
+}
+
+impl DrawTarget for Counter {
+    type Color = Rgb565;
+    type Error = core::convert::Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb565>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
+        self.1 += pixels.into_iter().count() as u32;
+        Ok(())
+    }
+}
+
+#[test]
+fn scenes_of_numbers_of_all_sizes_overflow_nowhere_30_000_cases() {
+    let texels: Vec<u16> = (0..=u16::MAX).collect();
+    let mesh =
+        (prop::collection::vec(vertex_of_any_size(), 3..8), prop::collection::vec(any::<[u16; 3]>(), 2..9));
+    let sizes = prop_oneof![6 => (1..=48_u32, 1..=24_u32), 1 => (Just(1023), 1..=2_u32), 1 => (1..=2_u32, Just(1023))];
+    let cameras = sizes.prop_flat_map(|(width, height)| {
+        (
+            Just((width, height)),
+            prop_oneof![4 => Just(0), 1 => 0..=1023 - height],
+            camera_of_any_size(width, height),
+        )
+    });
+    let how = (0..SURFACES, 0..TEXTURES.len(), 0..3_u8, 0..CULLS.len());
+    let cases = (mesh, cameras, pose_of_any_size(), lights_of_any_size(), vec3_of_any_size(), how);
+    let seen = std::cell::Cell::new(0_u32);
+    for_all(
+        "scenes of numbers of all sizes",
+        30_000,
+        cases,
+        |((vertices, corners), camera, pose, lights, point, how)| {
+            let ((width, height), row, camera) = camera;
+            let (kind, size, quality, cull) = how;
+            let corners: Vec<_> =
+                corners.iter().map(|corners| corners.map(|index| index % vertices.len() as u16)).collect();
+            let mesh = Mesh::try_new(&vertices, &corners).expect("the indices are in range");
+            let lights = Lights::try_new([255; 3], &lights).expect("few enough");
+            let (log2_width, log2_height) = TEXTURES[size];
+            let texture = Texture::new(&texels[..1 << (log2_width + log2_height)], log2_width, log2_height);
+            let material = surface(kind, &texture, &lights).cull(CULLS[cull]);
+            let words = (width * height) as usize;
+            let (mut pixels, mut depth) = (vec![0x1234_u16; words + SPARE], vec![0_u16; words + SPARE]);
+            let mut band = Band::<Rgb565, Depth16>::new(Size::new(width, height), &mut pixels, &mut depth)
+                .expect("the slices are long enough")
+                .starting_at(row);
+            match quality {
+                0 => camera.draw(&mesh, &pose, &material, &mut band),
+                1 => camera.draw(&mesh, &pose, &material.exact(), &mut band),
+                _ => camera.draw(&mesh, &pose, &material.affine(), &mut band),
+            }
+            let mut list = DisplayList::<48, 32, 1>::new();
+            let _ = camera.draw(&mesh, &pose, &material, &mut list);
+            list.sort_back_to_front();
+            list.render(row, &mut band);
+            seen.set(seen.get() + u32::from(depth.iter().any(|depth| *depth > 0)));
+            prop_assert!(pixels[words..].iter().all(|word| *word == 0x1234), "pixels past the target");
+            prop_assert!(depth[words..].iter().all(|word| *word == 0), "depths past the target");
+            // Straight to a display.
+            let mut display = Counter(Size::new(width, height), 0);
+            let sides = [point.x, point.y];
+            let Ok(()) =
+                PerspectiveImage::posed(&texture, &camera, &pose, sides).two_sided().draw(&mut display);
+            // And what stands beside drawing.
+            let at = camera.project(point).map_or(Vec3::ZERO, |at| camera.unproject(at.x, at.y, point.z));
+            let eye = camera.look_at(point, at).orbit(point, point.x, Turn::from_raw(row as u16), Turn::ZERO);
+            let eye = eye.flown(point.x, point.y, point.z);
+            let other = Pose { translation: point, ..*eye.placement() };
+            let _ = (
+                pose * other,
+                pose.then(other).inverse(),
+                pose.orthonormalized(),
+                pose.transform_direction(point),
+            );
+            let _ = pose.interpolate(&other, point.x);
+            let _ = pose.interpolate(&other, I16F16::from_bits(point.x.to_bits() & 0xffff));
+            Ok(())
+        },
+    );
+    println!("scenes of numbers of all sizes: {} have a pixel to show", seen.get());
+    assert!(seen.get() > common::cases(30_000) / 20);
+}
+
+/// Two corners ½ px apart, with all the texels of a row between them: from one pixel of it to the next there is none.
+#[test]
+fn a_step_that_leads_beyond_the_triangle_is_not_multiplied() {
+    let corner = |x: i32, y: i32, q, u| Corner { x, y, q, attributes: [u, 0, 0, 0, 0] };
+    let triangle = Triangle([
+        corner(376, 120, 1_394_987_008, 0),
+        corner(384, 120, 1_394_987_008, -1),
+        corner(0, 0, 0, 0),
+    ]);
+    let vertices = triangle.0.map(common::screen_vertex);
+    let strip = Strip::new(32, 8, 0);
+    let texture = Texture::new(&[0xf800; 4], 1, 1);
+    let material = Material::textured(&texture);
+    let (result, pixels, depth) =
+        draw::<Rgb565, Depth16, _>((strip, 0), (0x1234, 0), &vertices, Cull::None, &material);
+    assert_eq!(result, Ok(()));
+    for ((x, y), (word, depth)) in strip.pixels().zip(pixels.iter().zip(&depth)) {
+        let inside = triangle.covers(x, y);
+        assert_eq!((*word, *depth > 0), (if inside { 0xf800 } else { 0x1234 }, inside), "at {x}, {y}");
+    }
 }

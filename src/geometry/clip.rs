@@ -126,6 +126,7 @@ impl Clip {
             let outside = (across - slope * i64::from(self.divisor(center[2]))) * sign;
             let length =
                 if self.flat != 0 { focal + 1 } else { length(focal as u32, slope.unsigned_abs() as u32) };
+            // 2⁴⁵ and 2¹⁸.
             outside <= (radius + 1) * length
         })
     }
@@ -184,6 +185,7 @@ impl Clip {
         } else {
             x >> -shift
         };
+        // Within ±2³⁰ each: the screen's middle is within ±2¹⁵/16 px.
         (mul_high_short(x, w.mantissa) + self.center[axis]) >> FINER
     }
 

@@ -135,10 +135,12 @@ impl ToClip {
     }
 
     /// The bounds' centre (x, y and w), and the radius in clip units, rounded up by more than a rotation's elements are
-    /// rounded.
+    /// rounded; at most 2⁴⁵, far beyond all clip coordinates.
+    ///
+    /// It is larger where a matrix of nothing meets the largest scale: the unit is chosen by both, the radius knows the scale alone.
     pub(crate) fn bounds(&self, bounds: &Bounds) -> ([i32; 3], i64) {
         let radius = (i64::from(bounds.radius) * i64::from(self.scale)) >> (34 - self.unit_bits);
-        (self.place_all(bounds.center), radius + (radius >> 10) + 4)
+        (self.place_all(bounds.center), (radius + (radius >> 10) + 4).min(1 << 45))
     }
 
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.

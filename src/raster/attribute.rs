@@ -72,14 +72,17 @@ impl Attribute {
 
     #[inline]
     fn offset(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
-        let product = mul_17(value, reciprocal); // within 2³¹
+        // Values at corners are within ±(2³⁰ − 2¹⁵), those between too but for rounding: less than 2¹¹ units, see
+        // [set-up](super::setup).
+        let product = mul_17(value, reciprocal);
         let down = self.shift - zeros as i32;
         if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) }
     }
 
-    /// Where q is the same all along: as [`Attribute::along`].
+    /// Where q is the same all along, over at least 2 `steps`: as [`Attribute::along`].
     #[inline]
     pub(crate) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32, steps: i32) -> (i32, i32) {
+        // Between three pixels or more, whose values are within ±2³⁰, a step is less than that.
         let product = mul_17(step, reciprocal);
         let down = self.shift - zeros as i32;
         let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };

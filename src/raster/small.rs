@@ -77,6 +77,7 @@ impl Slopes {
         let up = (self.zeros + dropped) as i32 - 28;
         for axis in 0..2 {
             let [b, c] = self.edges[axis];
+            // 19 bits times 10, twice: within ±2³⁰.
             let slope = mul_17(rise_1 * b + rise_2 * c, self.reciprocal);
             let step = if up < 0 { slope >> (-up & 31) } else { slope << (up & 31) };
             plane.steps[axis] = step;
@@ -204,6 +205,7 @@ impl TriangleSetup {
             };
             let rise = [at[1] - at[0], at[2] - at[0]];
             let [right, down] = attribute.plane.steps;
+            // Steps are below 2²⁹·⁶, as a range of 2²⁷ over at least 0.17 px makes them; q's below a quarter: below 2²⁷·⁶.
             let xx = -mul_16_signed(right, q_right);
             let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
             let yy = -mul_16_signed(down, q_down);
@@ -211,7 +213,7 @@ impl TriangleSetup {
             attribute.plane.origin = attribute.origin();
             let [rise_1, rise_2] = [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i)));
             slopes.set_plane(&mut attribute.plane, rise_1, rise_2);
-            // From corner 0's pixel instead of corner 0.
+            // From corner 0's pixel instead of corner 0, by at most 8 sixteenths: sums below 2³¹.
             let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
             let [m, n] = slopes.pixel;
             attribute.plane.origin = attribute

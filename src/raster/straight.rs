@@ -55,7 +55,7 @@ impl Bend {
                 length(across[0], down[0]),
                 length(across[0] + across[1], down[0] + down[1]),
             ],
-            // Rounded up; 15 bits times 17.
+            // Rounded up; falls are less than a quarter: at most 2¹⁴ times 2¹⁷.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
                 .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
             reciprocal,

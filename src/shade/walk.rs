@@ -117,11 +117,12 @@ impl<'a, const N: usize> Walk<'a, N> {
     }
 
     /// Whether q is so nearly the same for some pixels that attributes are linear: (length)²·|q′|/q ≤ 1/8, the error of going
-    /// along the tangent.
+    /// along the tangent. Not for one or two pixels: from the one to the other an attribute may cross its whole range, or
+    /// leave the triangle, and a step has one bit less than that takes.
     #[inline]
     fn is_level(&self, pixels: i32) -> bool {
         let rise = self.q_step.unsigned_abs();
-        rise < 1 << 12 && rise * (pixels * pixels) as u32 <= self.least(pixels) >> 3
+        pixels >= 2 && rise < 1 << 12 && rise * (pixels * pixels) as u32 <= self.least(pixels) >> 3
     }
 
     /// The least q of the next pixels.
@@ -230,6 +231,7 @@ impl Span<'_> {
 /// that no pixel lies beyond the end.
 #[inline]
 fn quadratic(rise: i32, length: i32, inverse: u32, bending: i32) -> (i32, i32) {
+    // An inverse is below 2¹⁶; a rise and what bends it may be anything.
     let mean = towards_zero(mul_16(rise, inverse));
     let bend = towards_zero(mul_16_signed(mean << 2, bending));
     // Pairs before the last have added 0 + 2 + 4 …, and a single step behind them half as much as a pair.

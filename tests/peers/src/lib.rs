@@ -1,4 +1,4 @@
-//! fixel beside its peers: other rasterizers from crates.io draw the same [`scene`]s on the machine that
+//! fixel beside its peers: other Rust rasterizers draw the same [`scene`]s on the machine that
 //! builds them, in one run.
 //!
 //! Every library of [`libraries`] is a [`Library`](library::Library) that makes a

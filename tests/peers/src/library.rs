@@ -15,7 +15,7 @@ pub trait Painter {
     fn words(&self) -> Vec<u16>;
 }
 
-/// A rasterizer from crates.io.
+/// A published rasterizer.
 pub trait Library: fmt::Debug {
     /// The crate's name.
     fn name(&self) -> &'static str;
