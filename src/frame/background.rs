@@ -1,8 +1,8 @@
 //! Backgrounds: what a band is cleared to, row by row.
 //!
-//! - In: a row of the screen.
-//! - Out: its words.
-//! - Assumes: a row begins in column 0.
+//! - In: the number of a row of the screen, and the memory of its pixels.
+//! - Out: the words of that row, one per pixel.
+//! - Assumes: the memory begins in column 0.
 
 use super::format::PixelFormat;
 use crate::scene::Texture;
@@ -16,7 +16,8 @@ pub trait Background<F: PixelFormat> {
     fn fill_row(&self, y: u32, row: &mut [F::Word]);
 }
 
-/// Sixteen at a time: 1.3 cycles a pixel on a Cortex-M4 and 2.3 on an M0+, where the library's loop takes 1.8 and 2.8.
+/// Fills a row with one word, sixteen pixels at a time: 1.3 cycles per pixel on a Cortex-M4 and 2.3 on an M0+, where the
+/// library's loop takes 1.8 and 2.8.
 fn fill_evenly<W: Copy>(row: &mut [W], word: W) {
     let (blocks, rest) = row.as_chunks_mut();
     for block in blocks {
@@ -34,15 +35,16 @@ impl<F: PixelFormat> Background<F> for Rgb565 {
 /// From one colour at the top of the screen to another at its bottom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gradient {
-    /// Red, green and blue of row 0, I16F16.
+    /// Red, green and blue of row 0, I16F16, plus a half for rounding.
     top: [i32; 3],
-    /// What is added from row to row, I16F16.
+    /// What is added to them from row to row, I16F16.
     step: [i32; 3],
+    /// The last row of the screen.
     last: u32,
 }
 
 impl Gradient {
-    /// Over a screen of `height` rows; beyond them the colour stays.
+    /// A gradient over a screen of `height` rows. Below them the colour stays.
     #[must_use]
     pub fn new(top: Rgb888, bottom: Rgb888, height: u32) -> Self {
         let last = height.clamp(1, 1023) - 1;
@@ -72,7 +74,7 @@ impl<F: PixelFormat> Background<F> for Texture<'_> {
     }
 }
 
-/// A picture of RGB565 words, row after row, with its corner in the screen's; black where it ends.
+/// A picture of RGB565 words, row after row, in the screen's top left corner. Beyond its ends the screen is black.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     words: &'a [u16],
@@ -80,7 +82,7 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// Of rows of `width` words.
+    /// A picture with rows of `width` words.
     #[must_use]
     pub const fn new(words: &'a [u16], width: usize) -> Self {
         Self { words, width }

@@ -1,4 +1,10 @@
 //! A band: some rows of the screen, or all of them, in memory that the user owns.
+//!
+//! - In: memory for pixels and depths, and which rows of the screen they are.
+//! - Out: the words of these rows, as pixels, colours or bytes, for a display.
+//! - Assumes: nothing; memory that is too short is an error.
+//!
+//! A *word* is one pixel in memory, in the band's pixel format.
 
 use super::background::Background;
 use super::depth::DepthFormat;
@@ -9,11 +15,11 @@ use embedded_graphics::geometry::Size;
 
 /// A strip of rows of a screen, or the whole screen, in memory that the user owns.
 ///
-/// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen: what lies
-/// outside its rows is left out. Its contents are as they were given: begin each picture with
-/// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a part,
-/// of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by DMA
-/// while another is drawn, see [`Band::swap_pixels`].
+/// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen:
+/// what lies outside its rows is not drawn. At first it contains what the memory did. Begin each picture with
+/// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a
+/// part, of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by
+/// DMA while another is drawn, see [`Band::swap_pixels`].
 ///
 /// ```
 /// use fixel::{Band, Depth16};
@@ -25,20 +31,20 @@ use embedded_graphics::geometry::Size;
 /// # Ok::<(), fixel::TargetError>(())
 /// ```
 pub struct Band<'a, F: PixelFormat, D: DepthFormat> {
-    /// Rows one after another, width · `rows` words.
+    /// The pixels, row after row: `width` · `rows` words.
     pub(crate) pixels: &'a mut [F::Word],
-    /// Likewise.
+    /// The depths, row after row: as many words, or any number if depth is never tested.
     pub(crate) depth: &'a mut [D::Word],
     pub(crate) width: u16,
     /// How many rows there is memory for.
     rows: u16,
-    /// How many of them it has: all, but at the bottom of a screen.
+    /// How many of them are in use: all, but at the bottom of a screen there may be fewer.
     height: u16,
     /// The screen row of the first row.
     pub(crate) top: u16,
 }
 
-/// The longest side of a target: what a guard band that fits `i32` edge functions leaves room for.
+/// The longest side of a target, in pixels. Edge functions have to fit an `i32`. That limits the guard band, and so the screen.
 const MAX_SIDE: u32 = 1023;
 
 impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
@@ -57,21 +63,21 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         let found = pixels.len();
         let pixels = pixels.get_mut(..needed).ok_or(TargetError::Pixels { needed, found })?;
         let found = depth.len();
-        // Depth that is never tested is never looked at.
+        // Depth that is never tested needs no memory.
         let needed = if D::ALWAYS_PASSES { needed.min(found) } else { needed };
         let depth = depth.get_mut(..needed).ok_or(TargetError::Depth { needed, found })?;
         let (width, rows) = (size.width as u16, size.height as u16);
         Ok(Self { pixels, depth, width, rows, height: rows, top: 0 })
     }
 
-    /// The same memory as the rows from `row` on of a taller screen (at most 1023).
+    /// Makes this the band of the rows from `row` on (at most 1023) of a taller screen; the contents stay.
     #[must_use]
     pub fn starting_at(mut self, row: u32) -> Self {
         self.move_to(row);
         self
     }
 
-    /// Makes this the band of the rows from `row` on (at most 1023); the contents stay.
+    /// As [`Band::starting_at`], in place.
     pub fn move_to(&mut self, row: u32) {
         self.top = row.min(MAX_SIDE) as u16;
     }
@@ -82,7 +88,11 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         Size::new(self.width as u32, self.height as u32)
     }
 
-    /// Forgets all depths, so that whatever is drawn next is seen; the pixels stay.
+    /// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen:
+    /// what lies outside its rows is not drawn. At first it contains what the memory did. Begin each picture with
+    /// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a
+    /// part, of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by
+    /// DMA while another is drawn, see [`Band::swap_pixels`].
     pub fn clear_depth(&mut self) {
         D::clear(self.depth);
     }
@@ -93,12 +103,12 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.pixels.get(..self.len()).unwrap_or_default()
     }
 
-    /// How many pixels it has.
+    /// How many pixels are in use.
     fn len(&self) -> usize {
         usize::from(self.width) * usize::from(self.height)
     }
 
-    /// The depths, row after row; without depth what [`Band::new`] was given.
+    /// The depths, row after row. If depth is never tested there may be fewer than pixels: those that [`Band::new`] was given.
     #[must_use]
     pub fn depth(&self) -> &[D::Word] {
         self.depth.get(..self.len()).unwrap_or(self.depth)
@@ -120,11 +130,11 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         bytemuck::must_cast_slice(self.pixels())
     }
 
-    /// Shows nothing but a background, and forgets all depths.
+    /// Clears the pixels to a background, and all depths.
     pub fn clear_to(&mut self, background: &impl Background<F>) {
         let top = u32::from(self.top);
         let mut rest = &mut *self.pixels;
-        // `chunks_exact_mut` would divide.
+        // Not by `chunks_exact_mut`, which divides.
         for y in top..top + u32::from(self.height) {
             let Some((row, others)) = rest.split_at_mut_checked(self.width.into()) else {
                 break;
@@ -135,8 +145,8 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.clear_depth();
     }
 
-    /// Makes this the rows from `top` on of a screen of `height` rows, as many as there is memory for and the screen has. If that is
-    /// none, it returns `false`, and has all its rows again.
+    /// Makes this the band of the rows from `top` on of a screen of `height` rows: as many as there is memory for, or as are left
+    /// of the screen. If none is left it returns false, and all rows that there is memory for are in use again.
     pub(crate) fn move_to_part(&mut self, top: u32, height: u32) -> bool {
         let rows = height.min(MAX_SIDE).saturating_sub(top).min(self.rows.into());
         self.move_to(top);
@@ -144,17 +154,20 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         rows > 0
     }
 
-    /// Ends what [`Band::move_to_part`] began.
+    /// Takes all rows into use again that there is memory for, after [`Band::move_to_part`].
     pub(crate) fn all_rows(&mut self) {
         self.height = self.rows;
     }
 
-    /// Gives away the pixels that were drawn, and takes others to draw into: a DMA channel sends the one while the band is drawn
-    /// anew. The depth stays, as do the pixels of the other memory: [`Band::clear_to`] and `clear` begin anew.
+    /// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen:
+    /// what lies outside its rows is not drawn. At first it contains what the memory did. Begin each picture with
+    /// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a
+    /// part, of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by
+    /// DMA while another is drawn, see [`Band::swap_pixels`].
     ///
-    /// A band of static memory gives and takes `&'static mut [u16]`, which a channel may own until it is done. As bytes in
-    /// [`BigEndian`](super::BigEndian) order they are a `ReadBuffer` of `embedded-dma`, with nothing to be swapped on the way.
-    /// A channel that moves words of 4 bytes wants the array in a `#[repr(align(4))]` struct.
+    /// In a band of static memory both are a `&'static mut [u16]`, which a channel may own until it is done. As bytes in
+    /// [`BigEndian`](super::BigEndian) order that is a `ReadBuffer` of `embedded-dma`, with no bytes to be swapped on the way.
+    /// For a channel that moves words of 4 bytes, put the array in a `#[repr(align(4))]` struct.
     ///
     /// ```
     /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
@@ -172,8 +185,8 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
     ///
     /// # Errors
     ///
-    /// [`TargetError::Pixels`] if there are fewer words than the band has pixels; nothing has changed then. Of more the band
-    /// keeps, and later gives away, only as many.
+    /// [`TargetError::Pixels`] if `pixels` has fewer words than the band has memory for; nothing has changed then. If it has
+    /// more, only the first so many are taken, and come back later.
     pub fn swap_pixels(&mut self, pixels: &mut &'a mut [F::Word]) -> Result<(), TargetError> {
         let (needed, found) = (self.pixels.len(), pixels.len());
         if found < needed {
@@ -184,13 +197,13 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         Ok(())
     }
 
-    /// The memory, for the next use: the pixels of a static band go to a DMA channel as they came.
+    /// The memory of pixels and depths, for another use. That of a static band is `'static` still, as a DMA channel needs it.
     #[must_use]
     pub fn into_slices(self) -> (&'a mut [F::Word], &'a mut [D::Word]) {
         (self.pixels, self.depth)
     }
 
-    /// The part of the screen that it holds.
+    /// The part of the screen that is in use.
     pub(crate) fn window(&self) -> Window {
         let top = i32::from(self.top);
         Window { columns: 0..i32::from(self.width), rows: top..top + i32::from(self.height) }

@@ -1,30 +1,33 @@
 //! Depth formats: how the depth of a pixel is stored, and which of two surfaces is in front.
+//!
+//! - In: near/w of a surface at a pixel, and the depth stored there.
+//! - Out: whether the surface is visible; if so its depth is stored.
+//! - Assumes: near/w is 1 at the near plane and less beyond it, so greater is nearer.
 
 use crate::num::U1F31;
 
-/// How depth is kept, and who wins.
+/// How depth is stored, and which of two surfaces is visible.
 pub trait DepthFormat {
     /// The depth of one pixel in memory.
     type Word: Copy;
 
-    /// What a pixel holds that nothing was drawn to.
+    /// The depth of a pixel that nothing was drawn to.
     const CLEAR: Self::Word;
 
-    /// Whether every test passes, so that none is made.
+    /// Whether every test passes. Then none is made, and no memory for depths is needed.
     const ALWAYS_PASSES: bool = false;
 
-    /// Whether a pixel with this near/w is drawn; stores its depth if so. Called once for each
-    /// pixel that a triangle covers.
+    /// Whether a pixel with this near/w is visible; stores its depth if so. Called once for each pixel that a triangle covers.
     fn test(stored: &mut Self::Word, near_w: U1F31) -> bool;
 
-    /// Makes all [`DepthFormat::CLEAR`].
+    /// Sets all depths to [`DepthFormat::CLEAR`].
     #[doc(hidden)]
     #[inline]
     fn clear(depth: &mut [Self::Word]) {
         depth.fill(Self::CLEAR);
     }
 
-    /// As [`DepthFormat::test`], for 2⁻¹⁶ … 1 only.
+    /// As [`DepthFormat::test`], where near/w is known to be 2⁻¹⁶ … 1. (That of small triangles always is.)
     #[doc(hidden)]
     #[inline]
     fn test_small(stored: &mut Self::Word, near_w: U1F31) -> bool {
@@ -32,8 +35,8 @@ pub trait DepthFormat {
     }
 }
 
-/// 16-bit depth: max(1, near/w · 2¹⁶) rounded down, 0 where nothing was drawn. Strictly nearer wins;
-/// of equals the first stays.
+/// 16-bit depth: near/w · 2¹⁶ rounded down, but at least 1; 0 where nothing was drawn. A pixel is drawn if it is strictly
+/// nearer: of equals the first stays.
 #[derive(Clone, Copy, Debug)]
 pub struct Depth16;
 
@@ -43,7 +46,7 @@ impl DepthFormat for Depth16 {
 
     #[inline]
     fn clear(depth: &mut [u16]) {
-        // Words of 32 bits are cleared a fifth faster on a Cortex-M0+ and a seventh on an M4 than what need not be any.
+        // As aligned words of 32 bits: a fifth faster on a Cortex-M0+, and a seventh on an M4.
         let (first, words, last) = bytemuck::pod_align_to_mut::<u16, u32>(depth);
         first.fill(0);
         words.fill(0);
@@ -62,7 +65,7 @@ impl DepthFormat for Depth16 {
 
     #[inline]
     fn test_small(stored: &mut u16, near_w: U1F31) -> bool {
-        // 4 cycles less.
+        // Not below 1, as it is: 4 cycles less.
         let depth = near_w.to_bits() >> 15;
         let nearer = depth > u32::from(*stored);
         if nearer {
@@ -72,7 +75,7 @@ impl DepthFormat for Depth16 {
     }
 }
 
-/// No depth: what is drawn last is seen. It takes no memory. A [`DisplayList`](crate::DisplayList) can be
+/// No depth: what is drawn last is visible. It takes no memory. A [`DisplayList`](crate::DisplayList) can be
 /// [sorted](crate::DisplayList::sort_back_to_front) for it.
 #[derive(Clone, Copy, Debug)]
 pub struct NoDepth;

@@ -1,4 +1,8 @@
 //! A band as embedded-graphics sees it: a target to draw 2D on, and pixels to read.
+//!
+//! - In: areas and points in the coordinates of the screen, and colours.
+//! - Out: the words of those that lie in the band; or, read back, their colours.
+//! - Assumes: nothing; what lies outside the band is left alone.
 
 use super::band::Band;
 use super::depth::DepthFormat;
@@ -13,12 +17,12 @@ use embedded_graphics::image::GetPixel;
 use embedded_graphics::primitives::Rectangle;
 
 impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
-    /// The colours of an area of the screen, row after row, as far as it lies in the band.
+    /// The colours of that part of an area of the screen that lies in the band, row after row.
     pub fn colors_in(&self, area: &Rectangle) -> impl Iterator<Item = F::Color> {
         self.rows_in(area).flatten().map(|&word| F::decode(word))
     }
 
-    /// The rows of an area of the screen, as far as it lies in the band.
+    /// The rows of words of that part of an area of the screen that lies in the band.
     pub fn rows_in(&self, area: &Rectangle) -> impl Iterator<Item = &[F::Word]> {
         let (columns, rows) = self.within(area).unwrap_or((0..0, 0..0));
         rows.map(move |y| {
@@ -27,8 +31,8 @@ impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
         })
     }
 
-    /// The columns and rows of an area that lie in the band. (`Rectangle::intersection` overflows on areas at the ends
-    /// of the coordinates.)
+    /// The columns and the rows of an area that lie in the band. (`Rectangle::intersection` overflows on areas at the ends of the
+    /// range of coordinates.)
     fn within(&self, area: &Rectangle) -> Option<(Range<i32>, Range<i32>)> {
         let overlap = |start: i32, length: u32, band: Range<i32>| {
             let end = (i64::from(start) + i64::from(length)).min(i64::from(band.end)) as i32;
@@ -40,8 +44,7 @@ impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
         Some((columns, overlap(area.top_left.y, area.size.height, rows)?))
     }
 
-    /// The words of the part of a row (of the screen) from column `x` on, `width` long; the
-    /// rectangle that they come from lies inside.
+    /// `width` words of row `y` of the screen, from column `x` on. All of them lie in the band.
     fn row_mut(&mut self, x: i32, y: i32, width: u32) -> &mut [F::Word] {
         let start = (y - i32::from(self.top)) as usize * usize::from(self.width) + x as usize;
         self.pixels.get_mut(start..start + width as usize).unwrap_or_default()
@@ -81,7 +84,8 @@ impl<F: PixelFormat, D: DepthFormat> DrawTarget for Band<'_, F, D> {
         };
         let inside = (columns.end - columns.start) as u32;
         let width = area.size.width as usize;
-        // What the area has left and above; then for each row what it has right and, of the next, left.
+        // How many colours lie outside the band before the next row: first those above it and left of it, then, from row to row,
+        // those right of it and those left of it in the next row.
         let before = columns.start.wrapping_sub(area.top_left.x) as u32 as usize;
         let above = rows.start.wrapping_sub(area.top_left.y) as u32 as usize;
         let mut gap = above.saturating_mul(width).saturating_add(before);

@@ -1,13 +1,17 @@
 //! Pixel formats: how a colour is stored as a word.
+//!
+//! - In: a colour, as embedded-graphics has it, as RGB565, or as channels of 8 bits.
+//! - Out: its word, which is one pixel in memory.
+//! - Assumes: nothing.
 
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{PixelColor, Rgb565, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
-/// How a colour stands in memory.
+/// How a colour is stored in memory.
 ///
-/// A colour type that is its own format stands as a native word; [`BigEndian`] is the byte order
-/// that most SPI displays want, so that rows can be sent as they are.
+/// A colour type that is its own format is stored as a word in the machine's byte order. [`BigEndian`] has the order that
+/// most SPI displays want, so that rows can be sent as they are.
 pub trait PixelFormat {
     /// One pixel in memory.
     type Word: Copy;
@@ -20,13 +24,13 @@ pub trait PixelFormat {
     /// A word's colour.
     fn decode(word: Self::Word) -> Self::Color;
 
-    /// The word of a native RGB565 number, as textures hold it.
+    /// The word of an RGB565 number in the machine's byte order, as textures hold it.
     fn rgb565(bits: u16) -> Self::Word;
 
     /// The word of three 8-bit channels.
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
 
-    /// The word of a grey: of three channels that are the same.
+    /// The word of a grey, whose three channels are all `level`.
     #[inline]
     #[must_use]
     fn gray(level: u8) -> Self::Word {
@@ -60,7 +64,7 @@ impl PixelFormat for Rgb565 {
 
     #[inline]
     fn gray(level: u8) -> u16 {
-        // Without masks: two registers less on a Cortex-M0+, 11 cycles a pixel.
+        // Without masks: two registers less on a Cortex-M0+, 11 cycles per pixel.
         let level = u16::from(level);
         (level >> 3) << 11 | (level >> 2) << 5 | level >> 3
     }

@@ -1,4 +1,4 @@
-//! Memory of pixels: how a pixel and its depth are stored, the band of rows that is drawn into, and what it is cleared to.
+//! Memory of pixels: how a pixel and its depth are stored, the band of rows that is drawn to, and what it is cleared to.
 //!
 //! Nothing here knows what a triangle is.
 

@@ -1,9 +1,13 @@
-//! A window: the columns and rows that are drawn to, and which pixel centres lie in an extent.
+//! A window: the columns and rows that are drawn to; and which pixel centres lie between two positions.
+//!
+//! - In: positions in 1/16 px, viewports.
+//! - Out: columns and rows of pixels, as start and end (exclusive).
+//! - Assumes: pixel centres are at +½, as everywhere.
 
 use crate::scene::Viewport;
 use core::ops::Range;
 
-/// The first pixel whose centre lies on or behind a place along an axis (1/16 px).
+/// The first pixel, along an axis, whose centre lies at or after a position (1/16 px).
 pub(crate) const fn first_center(at: i32) -> i32 {
     (at + 7) >> 4
 }
@@ -16,14 +20,16 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// Of the largest target.
+    /// The window of the largest target.
     pub(crate) const LARGEST: Self = Self { columns: 0..1023, rows: 0..1023 };
 
-    /// The first pixel centre within an extent of three positions (1/16 px) along an axis, and the one behind the last.
+    /// The pixels, along an axis, whose centres lie between the least and the greatest of three positions (1/16 px), as
+    /// [start, end], end exclusive. A centre at the least is one of them, a centre at the greatest is not.
     pub(crate) fn centers(a: i32, b: i32, c: i32) -> [i32; 2] {
         [first_center(a.min(b).min(c)), first_center(a.max(b).max(c))]
     }
 
+    /// The part of it that lies in a viewport.
     pub(crate) fn within(self, viewport: &Viewport) -> Self {
         let (left, top) = (i32::from(viewport.left), i32::from(viewport.top));
         let within = |range: Range<i32>, start: i32, length: i16| {

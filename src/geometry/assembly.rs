@@ -1,8 +1,12 @@
-//! Assembly: the triangles of a mesh, one after the other, with their corners on the screen.
+//! Primitive assembly: the triangles of a mesh, one after another, with their corners on the screen.
 //!
-//! - In: a mesh, and how its vertices get to the screen.
-//! - Out: triangles that are not culled, oriented, lit, cut where a plane cuts them.
-//! - Assumes: triangles before each other share vertices: a cache of nine keeps them.
+//! - In: a mesh, its transform to clip space and the planes that clip it there, its colouring and culling.
+//! - Out: the triangles that are not culled, wound clockwise and lit. A triangle that is clipped comes out in pieces.
+//! - Assumes: triangles that follow each other share vertices. A cache of nine keeps the last that were transformed.
+//!
+//! First those vertices of a triangle are transformed that the cache does not hold. Then the triangle may be culled. Only the
+//! vertices of triangles that are left get attributes and light. So the cache may hold vertices without attributes. A
+//! triangle that has to be clipped takes the cache's memory for its polygon, and the cache is empty afterwards.
 
 use super::clip::Clip;
 use super::coloring::{Coloring, dim};
@@ -14,28 +18,35 @@ use super::transform::ToClip;
 use crate::num::I16F16;
 use crate::scene::{Mesh, Vertex};
 
-/// How many screen vertices are kept, the oldest making room for the newest: neighbours in a mesh share most of theirs.
-/// (Clipping borrows the memory for the corners of a polygon.)
+/// How many vertices the cache holds, the newest taking the place of the oldest. As many as a clipped triangle may have corners,
+/// since clipping makes its polygon in the cache's memory.
 const CACHED: usize = MOST_CORNERS;
+/// How many hints there are: a vertex's is that of its index modulo this.
 const HINTS: usize = 64;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 
-/// The vertices that were placed last. In this order, in which Armv6-M needs the fewest registers to reach them.
+/// The vertices of a mesh that were transformed last, and how far [`Assembler::next`] has come. The fields are in the order
+/// in which Armv6-M reaches them with the fewest registers.
 #[repr(C)]
 pub(crate) struct VertexCache {
+    /// The index, in the mesh, of the vertex in each slot.
     owners: [u16; CACHED],
+    /// The slot that was filled last.
     newest: u8,
-    /// How many pieces are to be drawn of the triangle that was cut last.
+    /// How many pieces of the last clipped triangle are still to come; they come from the last to the first, so it is the
+    /// number of the current one too.
     pieces: u8,
     /// How many of the mesh's triangles were looked at.
     triangles: usize,
-    /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
+    /// For each index modulo [`HINTS`] the slot of the vertex that was placed last. A vertex whose hint another one took is not
+    /// found: it is transformed again, and is then in the cache twice.
     hints: [u8; HINTS],
     vertices: [ScreenVertex; CACHED],
 }
 
 impl VertexCache {
+    /// For a new mesh. Before use it has to [`forget`](Self::forget): here, vertex 0 counts as cached.
     pub(crate) const ZERO: Self = Self {
         owners: [0; CACHED],
         newest: 0,
@@ -45,21 +56,22 @@ impl VertexCache {
         vertices: [ScreenVertex::ZERO; CACHED],
     };
 
-    /// Nothing is found then: there is 0 in all slots but that to which the hint for 0 leads, and 1 in no other than that.
+    /// Empties the cache. Slot 0 counts as vertex 1 then and all others as vertex 0, while the hints of these two lead to
+    /// slots 0 and 1. So neither they nor any other vertex is found.
     pub(crate) fn forget(&mut self) {
         self.owners = [0; CACHED];
         self.owners[0] = 1;
         [self.hints[0], self.hints[1]] = [0, 1];
     }
 
-    /// The slot of a vertex.
+    /// The slot of a vertex, if it is found.
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
         let slot = usize::from(self.hints[usize::from(index) % HINTS]);
         (self.owners.get(slot) == Some(&index)).then_some(slot)
     }
 
-    /// A vertex's slot from now on: the oldest that is not among `used` (bits).
+    /// Gives a vertex the oldest slot that is not in the bit set `used`.
     #[inline(always)]
     fn give(&mut self, index: u16, used: u32) -> usize {
         let after = |slot| if slot < CACHED - 1 { slot + 1 } else { 0 };
@@ -74,27 +86,29 @@ impl VertexCache {
     }
 }
 
-/// A slot that is one.
+/// `None` for [`CACHED`], which stands for no slot.
 #[inline(always)]
 fn in_cache(slot: usize) -> Option<usize> {
     (slot < CACHED).then_some(slot)
 }
 
-/// The stages before set-up, for one mesh. Their temporaries are not on the stack while pixels are drawn: that is why its
-/// functions are not inlined.
+/// The stages before set-up, for one mesh. Its functions are not inlined, so that their stack frames are gone while pixels are
+/// drawn.
 pub(crate) struct Assembler<'a> {
     pub(crate) mesh: &'a Mesh<'a>,
     pub(crate) to_clip: &'a ToClip,
     pub(crate) clip: &'a Clip,
     pub(crate) coloring: &'a Coloring,
     pub(crate) cull: Cull,
-    /// [`Assembler::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
+    /// [`Assembler::light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
+    /// programs without lights.
     pub(crate) light_face: Option<fn(&Self, &mut VertexCache, usize)>,
 }
 
 impl Assembler<'_> {
-    /// The next triangle, or piece of one that was cut, that is not left out. Those that are, more than half of a closed mesh,
-    /// get no further than this loop, and vertices that only they have need nothing but a position.
+    /// The next triangle, or piece of a clipped one, that is not culled. This loop is as far as culled triangles get, more
+    /// than half of those of a closed mesh. A vertex that only culled triangles have is transformed, but never gets
+    /// attributes.
     #[inline(never)]
     pub(crate) fn next<'c>(
         &self,
@@ -133,7 +147,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// Where in the cache a triangle's vertices are, their attributes perhaps [`MISSING`]; `None` if it has to be cut.
+    /// The slots of a triangle's vertices, whose attributes may be [`MISSING`]; `None` if the triangle has to be clipped.
     #[inline(always)]
     fn place(
         &self,
@@ -141,7 +155,7 @@ impl Assembler<'_> {
         cache: &mut VertexCache,
         stats: &mut impl Count,
     ) -> Option<[usize; 3]> {
-        // Only a vertex that is placed anew is asked whether it has to be cut off.
+        // A vertex that is found needs no clip test: where one lies outside, the cache is emptied.
         let a = match cache.find(a) {
             Some(slot) => slot,
             None => in_cache(self.place_vertex(a, 0, cache, stats))?,
@@ -157,8 +171,9 @@ impl Assembler<'_> {
         Some([a, b, c])
     }
 
-    /// Puts a vertex in a slot that is not among `used` (bits); no slot if it has to be cut off, and the triangle with it, which
-    /// empties the cache.
+    /// Transforms a vertex into a slot that is not in the bit set `used`, and returns the slot; or [`CACHED`] if the vertex lies
+    /// beyond a plane or outside the guard band. Then the triangle has to be clipped, and that has to empty the cache, in which
+    /// the slot bears this vertex's index already.
     #[inline(never)]
     fn place_vertex(&self, index: u16, used: u32, cache: &mut VertexCache, stats: &mut impl Count) -> usize {
         stats.count(|stats| &mut stats.transformed);
@@ -174,33 +189,36 @@ impl Assembler<'_> {
         to.set_attributes(self.mesh.vertex(index), self.coloring);
     }
 
-    /// Gives the corners of the triangle last looked at its own colours, or those that it has after it was cut, if so many.
-    pub(crate) fn light_face(&self, cache: &mut VertexCache, cut: usize) {
+    /// Multiplies the colours of the triangle last looked at by the light on its face. `polygon_corners` is 0 if it was not
+    /// clipped. Then its vertices in the cache get their attributes anew first, since they may have the light of another
+    /// triangle. If it was clipped, the corners of its polygon are the first so many vertices.
+    pub(crate) fn light_face(&self, cache: &mut VertexCache, polygon_corners: usize) {
         let indices = self.last(cache);
         let Some(light) = self.coloring.on_face(self.corners(cache)) else {
             return;
         };
-        // A vertex may be there twice.
+        // The cache may hold a vertex twice: both are lit.
         for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
-            if cut == 0 && indices.contains(owner) {
+            if polygon_corners == 0 && indices.contains(owner) {
                 vertex.set_attributes(self.mesh.vertex(*owner), self.coloring);
                 dim(&mut vertex.color, light);
-            } else if i < cut {
+            } else if i < polygon_corners {
                 dim(&mut vertex.color, light);
             }
         }
     }
 
-    /// The triangle last looked at.
+    /// The indices of the triangle last looked at.
     fn last(&self, cache: &VertexCache) -> [u16; 3] {
         self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
     }
 
+    /// Its vertices in the mesh.
     fn corners(&self, cache: &VertexCache) -> [&Vertex; 3] {
         self.last(cache).map(|index| self.mesh.vertex(index))
     }
 
-    /// Cuts the triangle last looked at, in the cache's memory.
+    /// Clips the triangle last looked at, to a polygon in the cache's memory.
     #[cold]
     #[inline(never)]
     fn cut(&self, cache: &mut VertexCache, stats: &mut impl Count) {
@@ -216,7 +234,7 @@ impl Assembler<'_> {
         cache.pieces = count.saturating_sub(2) as u8;
     }
 
-    /// Whether there is a piece left, of a triangle that was cut, that is not left out.
+    /// Goes on to the next piece of the clipped triangle that is not culled. False if there is none.
     #[cold]
     #[inline(never)]
     fn find_piece(&self, cache: &mut VertexCache, stats: &mut impl Count) -> bool {
@@ -230,7 +248,7 @@ impl Assembler<'_> {
         false
     }
 
-    /// That piece, of a fan around the first vertex.
+    /// The current piece of the clipped triangle: its polygon is a fan around the first vertex. `None` if the piece is culled.
     #[cold]
     #[inline(never)]
     fn piece<'c>(&self, cache: &'c VertexCache) -> Option<Oriented<'c>> {

@@ -1,15 +1,19 @@
 //! The colour of a vertex: its own or a material's, times the light that arrives there.
 //!
 //! - In: a vertex, or the corners of a face.
-//! - Out: a colour in U8F8 a channel.
+//! - Out: the vertex's colour, or the light on the face; in U8F8 per channel, 0 … 255.
 //! - Assumes: lights were brought to mesh space.
+//!
+//! Light is computed per vertex (smooth shading) or per triangle (flat shading). With flat shading a vertex's colour comes out
+//! unlit. The caller multiplies it by the light on the face, anew for each face that the vertex belongs to.
 
 use crate::num::U8F8;
 use crate::scene::{Lighting, Vertex};
 
-/// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own.
+/// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own colour, unlit.
 #[derive(Debug, Default)]
 pub struct Coloring {
+    /// Red, green and blue of all vertices; `None`: each has its own.
     base: Option<[u8; 3]>,
     light: Option<Light>,
 }
@@ -18,10 +22,12 @@ pub struct Coloring {
 struct Light {
     lighting: Lighting,
     shading: Shading,
+    /// Whether light from behind counts as if it came from in front.
     two_sided: bool,
 }
 
-/// Where light is computed, and what computes it: a pointer, so that a program that lights nothing does without.
+/// Per vertex (smooth) or per face (flat), and the function that computes light there. Function pointers, so that the linker
+/// drops lighting from programs that do not use it.
 #[derive(Debug)]
 enum Shading {
     Smooth(fn(&Light, &[u8; 3], &Vertex, &mut [U8F8; 3])),
@@ -29,7 +35,7 @@ enum Shading {
 }
 
 impl Light {
-    /// A colour times the light at its vertex.
+    /// A colour times the light at its vertex. (White is the light itself.)
     fn at_vertex(&self, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
         self.lighting.at_vertex(vertex, self.two_sided, to);
         if color[0] & color[1] & color[2] != 255 {
@@ -39,16 +45,18 @@ impl Light {
         }
     }
 
+    /// The light on a face.
     fn at_face(&self, corners: [&Vertex; 3]) -> [U8F8; 3] {
         self.lighting.at_face(corners.map(|vertex| vertex.position), self.two_sided)
     }
 }
 
 impl Coloring {
-    /// The vertices' own.
+    /// The vertices' own colour, unlit.
     pub(crate) const OWN: Self = Self { base: None, light: None };
 
-    /// `base`, or the vertices' own colour without it, times light: once a vertex, or if `faceted` once a triangle.
+    /// `base`, or the vertices' own colour if that is `None`, times light. Light is computed per vertex, or per triangle if
+    /// `faceted` (flat shading). If `two_sided`, light from behind a surface counts as light from in front does.
     #[must_use]
     pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting, faceted: bool, two_sided: bool) -> Self {
         let shading =
@@ -56,7 +64,7 @@ impl Coloring {
         Self { base, light: Some(Light { lighting, shading, two_sided }) }
     }
 
-    /// A vertex's colour, without the light of its triangle.
+    /// A vertex's colour; with flat shading without light, which is still to come [from its face](Coloring::on_face).
     #[inline]
     pub(crate) fn of_vertex(&self, vertex: &Vertex, to: &mut [U8F8; 3]) {
         let color = self.base.as_ref().unwrap_or(&vertex.color);
@@ -68,13 +76,13 @@ impl Coloring {
         }
     }
 
-    /// Whether colours are still to be multiplied by the light [on their face](Coloring::on_face).
+    /// Whether shading is flat: colours are still to be multiplied by the light [on their face](Coloring::on_face).
     #[inline]
     pub(crate) fn is_faceted(&self) -> bool {
         matches!(self.light, Some(Light { shading: Shading::Faceted(_), .. }))
     }
 
-    /// The light on a triangle, if colours are to be [dimmed](dim) by it.
+    /// The light on a triangle with flat shading, which its colours are to be [multiplied](dim) by; else `None`.
     pub(crate) fn on_face(&self, corners: [&Vertex; 3]) -> Option<[U8F8; 3]> {
         match &self.light {
             Some(light @ Light { shading: Shading::Faceted(at_face), .. }) => Some(at_face(light, corners)),
@@ -89,7 +97,7 @@ pub(crate) fn is_gray<T: PartialEq>([red, green, blue]: [T; 3]) -> bool {
     red == green && green == blue
 }
 
-/// Multiplies a colour by light.
+/// Multiplies a colour by light, of which 255 is full.
 #[inline(never)]
 pub(crate) fn dim(color: &mut [U8F8; 3], light: [U8F8; 3]) {
     for (channel, light) in color.iter_mut().zip(light) {
@@ -97,9 +105,9 @@ pub(crate) fn dim(color: &mut [U8F8; 3], light: [U8F8; 3]) {
     }
 }
 
-/// `product` / 255, within 1/256; exact if one of the factors is 255 and the other at most that.
+/// `product` / 255, both with 8 fraction bits, off by less than 1/256. Exact if one factor is 255 and the other at most that.
 #[inline]
 fn over_255(product: u32) -> U8F8 {
-    // 1/255 less 2⁻¹⁶ of it; 255 · 255.0 just fits.
+    // 257/2¹⁶ = (1 − 2⁻¹⁶)/255, so the quotient is a little low: it is rounded up. The largest product, 255 · 255.0, just fits.
     U8F8::from_bits(((product * 257 + 0xffff) >> 16) as u16)
 }

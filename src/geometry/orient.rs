@@ -1,25 +1,29 @@
-//! Orientation: which way round a triangle runs on the screen, whether that is culled, and its corners in the order of set-up.
+//! Winding and culling: the sign of a triangle's area, whether it is culled, and its corners in the order of set-up.
 //!
 //! - In: three screen vertices.
-//! - Out: the same clockwise, the nearest first, with twice the area.
-//! - Assumes: differences of positions fit the guard band, so that the area fits an i32.
+//! - Out: the same clockwise, the nearest first, with twice the area; or none, if the triangle is culled.
+//! - Assumes: the vertices lie in the guard band, so that twice the area fits an i32.
+//!
+//! Front faces run counter-clockwise on the screen. Set-up wants clockwise corners, so those of front faces are swapped. An
+//! `area` is always twice the area here, in 1/256 px², and positive if the corners run clockwise.
 
 use super::screen::ScreenVertex;
 
-/// Which side of a triangle is left out.
+/// Which triangles are culled, that is, not drawn because of the way they face. Front faces run counter-clockwise on the screen.
+/// Triangles without area are always culled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cull {
-    /// Triangles that run clockwise on the screen.
+    /// Back faces: triangles that run clockwise on the screen.
     #[default]
     Back,
-    /// Triangles that run counter-clockwise on the screen.
+    /// Front faces: triangles that run counter-clockwise on the screen.
     Front,
-    /// None.
+    /// Neither.
     None,
 }
 
 impl Cull {
-    /// By twice the area, positive clockwise on the screen.
+    /// Whether a triangle of this [`area`] is culled.
     #[inline]
     pub(crate) fn leaves_out(self, area: i32) -> bool {
         match self {
@@ -38,27 +42,28 @@ pub(crate) struct Oriented<'a> {
 }
 
 impl<'a> Oriented<'a> {
-    /// `None` for a triangle without area or culled.
+    /// `None` if the triangle is culled.
     #[inline]
     pub(crate) fn new(vertices: [&'a ScreenVertex; 3], cull: Cull) -> Option<Self> {
         let area = area(vertices.map(position));
         (!cull.leaves_out(area)).then(|| Self::of_area(vertices, area))
     }
 
-    /// Of a triangle's [`area`], which is not 0.
+    /// A triangle that is not culled, and its [`area`].
     #[inline(always)]
     pub(crate) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
         Self { vertices: in_order(vertices, area, |vertex| vertex.q.to_bits()), area: area.unsigned_abs() }
     }
 }
 
-/// Twice the area of a triangle between positions in 1/16 px, positive clockwise on the screen.
+/// Twice the area of a triangle, in 1/256 px², from positions in 1/16 px; positive if they run clockwise on the screen.
 #[inline(always)]
 pub(crate) fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
     (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 }
 
-/// The corners of a triangle of this [`area`], which is not 0, as set-up takes them: clockwise, the nearest first.
+/// A triangle's corners in the order in which set-up takes them, by its [`area`], which is not 0: clockwise, then rotated so that
+/// the one with the greatest `q` is first. Of corners with the same q the earlier one is.
 #[inline(always)]
 pub(crate) fn in_order<T: Copy>([a, b, c]: [T; 3], area: i32, q: impl Fn(T) -> u32) -> [T; 3] {
     let [b, c] = if area < 0 { [c, b] } else { [b, c] };
@@ -71,6 +76,7 @@ pub(crate) fn in_order<T: Copy>([a, b, c]: [T; 3], area: i32, q: impl Fn(T) -> u
     }
 }
 
+/// x and y in 1/16 px.
 pub(crate) fn position(vertex: &ScreenVertex) -> [i32; 2] {
     [vertex.x.to_bits().into(), vertex.y.to_bits().into()]
 }

@@ -1,4 +1,14 @@
-//! The arrow out of geometry: a vertex on the screen, and the range that its numbers have.
+//! What geometry passes to the rasterizer: a vertex on the screen, and the ranges of its numbers.
+//!
+//! - In: a position that was projected, with what the mesh says of the vertex.
+//! - Out: a `ScreenVertex`, and which of its attributes a shader reads.
+//! - Assumes: nothing; `in_range` checks vertices that come from the user.
+//!
+//! The *q* of a vertex is near/w, w being its distance along the line of sight: 1 at the near plane, less beyond it. So
+//! greater q is nearer. Without perspective q is (far − w)/(far − near): 1 at the near plane too, and 0 at the far one. q
+//! serves as depth and for perspective-correct interpolation.
+//!
+//! The *guard band* is the area around the screen in which positions have to lie. Triangles that reach out of it are clipped.
 
 use super::coloring::Coloring;
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
@@ -6,18 +16,19 @@ use crate::scene::Vertex;
 use core::fmt;
 use core::ops::RangeInclusive;
 
-/// A vertex on the screen, with all that is linear before or after the division by w.
+/// A vertex on the screen. q is linear on the screen. u, v and colour are linear in space: interpolation has to correct for
+/// perspective.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex {
     /// Pixels from the left edge, −1024 … 1023; pixel centres are at +½.
     pub x: I12F4,
     /// Pixels from the top edge, down, −1024 … 1023.
     pub y: I12F4,
-    /// near/w; 0 counts as 2⁻³¹, 1 and more as 1 − 2⁻³¹.
+    /// near/w: 1 at the near plane, less beyond it, so greater is nearer. 0 counts as 2⁻³¹, 1 and more as 1 − 2⁻³¹.
     pub q: U1F31,
     /// Texture coordinate to the right, in texels, −8192 … 8192.
     pub u: I16F16,
-    /// Texture coordinate downwards, likewise.
+    /// Texture coordinate downwards, in texels, −8192 … 8192.
     pub v: I16F16,
     /// Red, green and blue, 0 … 255.
     pub color: [U8F8; 3],
@@ -25,14 +36,15 @@ pub struct ScreenVertex {
 
 const _: () = assert!(size_of::<ScreenVertex>() == 24);
 
-/// The guard band of [`ScreenVertex`] positions, in 1/16 px: its width and height of 2047 px are
-/// the most with which every edge function fits an `i32`.
+/// The guard band of [`ScreenVertex`] positions, in 1/16 px: −1024 … 1023 px, that is, 2047 px wide and high. That is the
+/// most with which every edge function fits an `i32`: see set-up.
 pub(super) const GUARD_BAND: RangeInclusive<i32> = -1024 * 16..=1023 * 16;
 
+/// The largest texture coordinate, I16F16.
 const MAX_TEXELS: i32 = 8192 << 16;
 
 impl ScreenVertex {
-    /// The default.
+    /// [`Default::default`] as a constant.
     pub(crate) const ZERO: Self = Self {
         x: I12F4::ZERO,
         y: I12F4::ZERO,
@@ -42,12 +54,13 @@ impl ScreenVertex {
         color: [U8F8::ZERO; 3],
     };
 
+    /// Whether position and texture coordinates are in range. (q and colour are by their types.)
     pub(crate) fn in_range(&self) -> bool {
         [self.x, self.y].iter().all(|at| GUARD_BAND.contains(&i32::from(at.to_bits())))
             && [self.u, self.v].iter().all(|t| (-MAX_TEXELS..=MAX_TEXELS).contains(&t.to_bits()))
     }
 
-    /// What is beyond position and q, from a mesh.
+    /// Sets all but position and q: u and v from a vertex of a mesh, and the colour that it gets.
     #[inline]
     pub(crate) fn set_attributes(&mut self, vertex: &Vertex, coloring: &Coloring) {
         [self.u, self.v] = vertex.uv.map(I16F16::from);

@@ -1,10 +1,15 @@
-//! The reciprocal table: 1/q, and every other quotient, without a divide.
+//! Reciprocals from a table: 1/q, and every other quotient, without a divide instruction.
 //!
-//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1. Its 9 bits behind the
-//! leading one pick an interval of the table, the next 15 interpolate in it. The chord of 1/x over
-//! 1/512 of an octave is too high by up to 2⁻²⁰/x² of the value (f″h²/8), so the entries lie half of
-//! that too low, but for the first, which keeps powers of two exact: the error stays below 2⁻²⁰.
-//! The scheme is that of the Nintendo 64's rasterizer, which has 64 intervals.
+//! - In: a divisor, or one that is normalised, with its leading zeros.
+//! - Out: its reciprocal with a relative error below 2⁻²⁰ (`coarse`) or 2⁻³⁰ (`precise`), or in 17 bits (`short`); or an exact
+//!   quotient and remainder (`div_rem`), or a quotient of small integers (`quotient_of_10_bits`).
+//! - Assumes: what each function says of its divisor. Where 0 is allowed it counts as 1.
+//!
+//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1. The 9 bits after its leading one select an interval
+//! of the table, and the next 15 interpolate in it, linearly: by the chord of 1/x, x = m/2³¹. The chord is too high by up to
+//! 2⁻²⁰/x² of the value (f″h²/8 with h = 1/512). So the entries are lowered by half of that, and the error stays below 2⁻²⁰
+//! on both sides. The first entry is not lowered, so that powers of two stay exact. The scheme is that of the Nintendo 64's
+//! rasterizer, which has 64 intervals.
 //!
 //! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
@@ -12,7 +17,7 @@ use crate::num::{normalised, wide};
 
 const INTERVALS: usize = 512;
 
-/// 2³¹/x for x = 1 + i/512, less half the error of the chord, 2¹⁰/x³; rounded.
+/// 2³¹/x for x = 1 + i/512, rounded, less 2¹⁰/x³, which is half of the chord's error.
 static TABLE: [u32; INTERVALS + 1] = table();
 
 const fn table() -> [u32; INTERVALS + 1] {
@@ -30,9 +35,9 @@ const fn table() -> [u32; INTERVALS + 1] {
 /// 1/d as a mantissa and the leading zeros of d: 1/d = `mantissa` · 2^(`zeros` − 62).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reciprocal {
-    /// 2³⁰ … 2³¹ − 1.
+    /// 2³⁰ … 2³¹ − 1; in a [`coarse`](Self::coarse) one it may be up to 94 below 2³⁰.
     pub(crate) mantissa: i32,
-    /// Leading zeros of the divisor, 0 … 31.
+    /// The leading zeros of the divisor, 0 … 31.
     pub(crate) zeros: u32,
 }
 
@@ -44,45 +49,45 @@ impl Reciprocal {
         Self::coarse_normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
     }
 
-    /// From the mantissa `m`, 2³¹ … 2³² − 1.
+    /// As [`Reciprocal::coarse`], from a normalised divisor `m`, 2³¹ … 2³² − 1, and the leading zeros that it had.
     #[inline]
     pub(crate) fn coarse_normalised(m: u32, zeros: u32) -> Self {
-        // 2³¹ itself, for powers of two, is one too many for an i32.
+        // 2³¹, which comes of powers of two, is one too many for an i32: they are off by the last bit here.
         Self { mantissa: looked_up(m).min(i32::MAX as u32) as i32, zeros }
     }
 
-    /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors
-    /// below 2³¹. A divisor of 0 counts as 1.
+    /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors below 2³¹. (From there on half of `m`
+    /// would lose a bit.) A divisor of 0 counts as 1.
     #[inline(never)]
     pub(crate) fn precise(divisor: u32) -> Self {
         let Self { mantissa, zeros } = Self::coarse(divisor);
         let half_m = ((divisor.max(1) << zeros) >> 1) as i32;
-        // r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹;  y += y·r/2⁶¹.
+        // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹, and y += y·r/2⁶¹.
         let r = (1 << 61) - wide(half_m, mantissa);
         let step = (wide(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
         let mantissa = (i64::from(mantissa) + step).min(i64::from(i32::MAX)) as i32;
         Self { mantissa, zeros }
     }
 
-    /// The quotient `numerator / divisor`, rounded down, and the remainder 0 … `divisor` − 1.
-    /// `self` is the precise reciprocal of `divisor` (1 … 2²⁴).
+    /// The quotient `numerator / divisor`, rounded down, and the remainder 0 … `divisor` − 1. `self` is the precise
+    /// reciprocal of `divisor` (1 … 2²⁴).
     #[inline]
     pub(crate) fn div_rem(self, numerator: i32, divisor: i32) -> (i32, i32) {
         corrected((wide(numerator, self.mantissa) >> (62 - self.zeros)) as i32, numerator, divisor)
     }
 }
 
-/// 2⁶²/m for m = 2³¹ … 2³² − 1: 2³⁰ … 2³¹. Relative error below 2⁻²⁰, and none for 2³¹.
+/// 2⁶²/m for m = 2³¹ … 2³² − 1: 2³¹ … 2³⁰, or up to 94 less at the end. The relative error is below 2⁻²⁰, and 0 for m = 2³¹.
 #[inline]
 pub(crate) fn looked_up(m: u32) -> u32 {
     let i = (m >> 22) as usize & (INTERVALS - 1);
     let (left, right) = (TABLE[i], TABLE[i + 1]);
-    // 17 bits × 15 bits.
+    // 17 bits · 15 bits.
     let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
     left - fall
 }
 
-/// Quotient and remainder from a quotient that is off by at most a few.
+/// The exact quotient and remainder, from a quotient that is off by at most a few.
 #[inline]
 fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {
     let mut remainder = numerator.wrapping_sub(quotient.wrapping_mul(divisor));
@@ -96,21 +101,24 @@ fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {
     (quotient, remainder)
 }
 
-/// 2⁴⁸/m for m = 2³¹ … 2³² − 1, rounded: 2¹⁶ … 2¹⁷, with a relative error of 2⁻¹⁷ and the table's, for short products.
+/// 2⁴⁸/m for m = 2³¹ … 2³² − 1, rounded: 2¹⁶ … 2¹⁷, short enough for `mul_17` and products with 15 bits. The relative error
+/// is at most 2⁻¹⁷ from rounding, and the table's.
 #[inline]
 pub(crate) fn short(m: u32) -> u32 {
     (looked_up(m) + (1 << 13)) >> 14
 }
 
-/// [`short`] of a divisor's mantissa, and the divisor's leading zeros: 1/d = the former · 2^(zeros − 48).
+/// [`short`] of the normalised divisor, and the divisor's leading zeros: 1/d = the former · 2^(zeros − 48). A divisor of 0
+/// counts as 1.
 #[inline]
 pub(crate) fn short_of(divisor: u32) -> (u32, u32) {
     let (m, zeros) = normalised(divisor.max(1));
     (short(m), zeros)
 }
 
-/// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 and a divisor of 1 … 511, of which each has a place in
-/// the table: relative error below 2⁻²⁰, and rounded to nearest.
+/// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 (10 bits with the sign) and a divisor of 1 … 511.
+/// Each such divisor falls on an entry of the table, so nothing is interpolated. The reciprocal's relative error is below
+/// 2⁻²⁰, and the quotient is rounded to nearest.
 #[inline]
 pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
     let (m, zeros) = normalised((divisor as u32) << 23);
@@ -132,14 +140,14 @@ mod tests {
 
     #[test]
     fn coarse_is_within_2_pow_minus_20_for_every_input_of_its_table_stage() {
-        // The table stage sees 24 bits behind normalisation: 2²³ … 2²⁴ − 1 are all its inputs.
+        // The table stage takes 24 bits after the leading one: these are all its inputs.
         let (mut low, mut high) = (0f64, 0f64);
-        for d in 1u32 << 23..1 << 24 {
+        for d in 1u32 << 24..1 << 25 {
             let error = relative_error(Reciprocal::coarse(d), d);
             (low, high) = (low.min(error), high.max(error));
         }
         println!(
-            "reciprocal, coarse: 2^23 inputs, error {:+.3} … {:+.3} · 2^-20",
+            "reciprocal, coarse: 2^24 inputs, error {:+.3} … {:+.3} · 2^-20",
             low * 2f64.powi(20),
             high * 2f64.powi(20)
         );
@@ -151,7 +159,7 @@ mod tests {
         let (mut coarse, mut precise) = (0f64, 0f64);
         let mut count = 0;
         for shift in 0..32 {
-            // Prime strides: 2¹⁵ or more of every octave.
+            // Odd strides: all of the octaves below 2¹⁶, and 21 845 or more of each from there on.
             let first = 1u64 << shift;
             let stride = ((first >> 15) | 1) as usize;
             for d in (first..2 * first).step_by(stride) {

@@ -1,17 +1,19 @@
-//! The depth test along a span: which of its pixels are seen, as runs.
+//! The depth test along a span: which of its pixels are visible, as runs.
 //!
-//! - In: stored depths, and near/w at the first pixel with its step.
-//! - Out: the next run of pixels that pass, whose depths are stored.
-//! - Assumes: near/w stays within 0 … 2³¹ along the span.
+//! - In: stored depths, and near/w (31 fraction bits; greater is nearer) at the first pixel with its step per pixel.
+//! - Out: the first run of pixels that pass, their new depths stored, and how many pixels were tested to find it.
+//! - Assumes: near/w stays within 0 … 2³¹ along the span, that is 0 … 1.
 //!
-//! The loops know nothing of colours, and what makes colours knows nothing of depth.
+//! A span may have several runs, with hidden pixels between them. The caller shades one run, then asks again with what is left of
+//! the span. So a test and a shader are never in one loop, and neither takes registers from the other. (Small triangles are
+//! tested and shaded in one loop: see `shade::patch`.)
 
 use crate::frame::DepthFormat;
 use crate::num::U1F31;
 use core::ops::Range;
 
-/// Tests depth up to the first pixel that fails behind one that passes; returns the run of those that pass, and how many were
-/// tested.
+/// Finds the first run of pixels that pass, and stores their depths. Stops at the first pixel that fails after one that passed.
+/// Returns the run, which is empty and at the end of `depth` if no pixel passes, and how many pixels were tested.
 #[inline(never)]
 pub(crate) fn visible<D: DepthFormat>(
     depth: &mut [D::Word],
@@ -19,7 +21,7 @@ pub(crate) fn visible<D: DepthFormat>(
     step: i32,
 ) -> (Range<usize>, usize) {
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
-    // It is linear in between.
+    // near/w is linear, so the least of it is at an end. From 2⁻¹⁶ on (bit 15) the format's shorter test does.
     let [start, end] = if near_w.min(last) >> 15 != 0 {
         first_run(depth, near_w, step, D::test_small)
     } else {
@@ -28,14 +30,14 @@ pub(crate) fn visible<D: DepthFormat>(
     (start..end, (end + 1).min(depth.len()))
 }
 
+/// [`first_run`] where near/w may be below 2⁻¹⁶.
 #[cold]
 #[inline(never)]
 fn first_run_far_away<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> [usize; 2] {
     first_run(depth, near_w, step, D::test)
 }
 
-/// One loop looks for a pixel that passes and one for a pixel that does not: they know nothing of colours, and colours nothing
-/// of depth.
+/// The start and the end (exclusive) of the first run. One loop skips pixels that fail, then [`passing`] counts those that pass.
 #[inline(always)]
 fn first_run<W>(
     depth: &mut [W],
@@ -52,12 +54,13 @@ fn first_run<W>(
         }
         start += 1;
     }
-    let behind = depth.get_mut(start + 1..).unwrap_or_default();
-    let passed = passing(behind, near_w, step, test);
+    let rest = depth.get_mut(start + 1..).unwrap_or_default();
+    let passed = passing(rest, near_w, step, test);
     [start, (start + 1 + passed).min(depth.len())]
 }
 
-/// How many pixels pass up to the first that does not. Out of line on Armv6-M, where it needs all registers: 8 cycles a pixel, not 14.
+/// How many pixels pass before the first that fails. Out of line on Armv6-M, where it needs all registers: 8 cycles per pixel
+/// instead of 14.
 #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W, U1F31) -> bool) -> usize {
@@ -69,7 +72,7 @@ fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W,
     let (blocks, rest) = depth.as_chunks_mut::<8>();
     let tested = 8 * blocks.len();
     for (n, block) in blocks.iter_mut().enumerate() {
-        // Unknown, so that not all of its multiples are kept in memory.
+        // Hidden from the optimizer, which would compute the multiples of the step before the loop and keep them in memory.
         let step = core::hint::black_box(step);
         for (i, stored) in block.iter_mut().enumerate() {
             if !passes(stored, step) {

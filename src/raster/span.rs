@@ -1,8 +1,12 @@
-//! The arrow out of raster: pixels of one row of a triangle, side by side.
+//! What the rasterizer passes to shading: a span, pixels of one row of a triangle side by side.
+//!
+//! - In: a triangle that is set up, and the span's first pixel.
+//! - Out: near/w along the span; shading takes attributes from the set-up itself.
+//! - Assumes: the pixels lie in the triangle. How many they are, the memory that goes with the span says.
 
 use super::triangle::TriangleSetup;
 
-/// Pixels of one row of a triangle, side by side and all visible.
+/// Pixels of one row of a triangle, side by side, from the pixel (x, y) on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Span<'a> {
     pub(crate) setup: &'a TriangleSetup,
@@ -17,12 +21,12 @@ impl<'a> Span<'a> {
         Self { setup, x, y }
     }
 
-    /// Without its first pixels.
+    /// The same without the first `pixels`.
     pub(crate) const fn ahead(&self, pixels: usize) -> Self {
         Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
     }
 
-    /// q = near/w with 31 fraction bits at the first pixel, and its step.
+    /// near/w with 31 fraction bits at the first pixel, and its step per pixel.
     pub(crate) fn depth(&self) -> (u32, i32) {
         self.setup.at(&self.setup.z, self.x, self.y)
     }

@@ -1,34 +1,44 @@
-//! The channels of a colour in as few words as they need.
+//! The channels of a colour, packed in as few machine words as they need, so that few additions step them.
 //!
-//! Of three channels each has 8 integer and 8 fraction bits here, and red and blue share a word: one addition steps both. Steps
-//! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
-//! most. A single channel keeps its 16 fraction bits.
+//! - In: one channel (a grey) or three, in I16F16, with their steps and bends.
+//! - Out: the word of a pixel.
+//! - Assumes: channels stay within 0 … 255 at every pixel.
+//!
+//! Each of three channels has 8 integer and 8 fraction bits here. Red and blue share a machine word: one addition steps both.
+//! A single channel keeps its 16 fraction bits.
+//!
+//! A run is *straight* if channels change by the same step from pixel to pixel. It is *bent* if a *bend* is added to the
+//! steps after every second pixel, to follow perspective. With 8 fraction bits steps and bends are cut towards zero. So after
+//! 8 pixels of a bent run, or 16 of a straight one, a channel is off by at most 1/16 of 1/255, its unit. That is how long
+//! such runs may be.
 
 use super::fill::LONGEST;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
 
-/// `M` channels in as few words as they need; places, steps and bends alike.
+/// `M` packed channels: the values at a pixel, or steps, or bends.
 pub(crate) trait Channels<const M: usize>: Copy {
-    /// How many of 16 fraction bits are left out.
+    /// How many of the 16 fraction bits are dropped.
     const DROPPED: u32;
     /// The longest bent run, in pixels.
     const LONGEST: i32;
-    /// Log₂ of the longest straight run that does not start anew from 32 bits, if bits are left out.
+    /// Log₂ of the longest straight run, in pixels. If bits are dropped a longer one is drawn as several, each of which starts
+    /// anew from 16 fraction bits.
     const RUN_LOG2: u32;
 
-    /// From channels without the bits left out.
+    /// Packs channels whose bits are dropped already.
     fn pack(channels: [i32; M]) -> Self;
 
+    /// The sum, channel by channel, wrapping.
     fn plus(self, other: Self) -> Self;
 
-    /// From I16F16.
+    /// The values at a pixel, from I16F16.
     #[inline]
     fn place(channels: [i32; M]) -> Self {
         Self::pack(channels.map(|channel| channel >> Self::DROPPED))
     }
 
-    /// From a step in I16F16, cut towards zero.
+    /// A step, from I16F16, cut towards zero.
     #[inline]
     fn step(step: [i32; M]) -> Self {
         Self::pack(step.map(|step| shifted(step, Self::DROPPED)))
@@ -37,13 +47,14 @@ pub(crate) trait Channels<const M: usize>: Copy {
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
 
+    /// The word of a pixel.
     #[inline]
     fn word<F: PixelFormat>(self) -> F::Word {
         color::<F>(self.rgb())
     }
 }
 
-/// One channel for all three.
+/// One channel that stands for all three, I16F16.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gray(i32);
 
@@ -73,7 +84,7 @@ impl Channels<1> for Gray {
     }
 }
 
-/// Red above blue, and green.
+/// Red in the upper half of the first word, blue in the lower one; green in the second word.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RedBlueGreen(i32, i32);
 
@@ -84,7 +95,7 @@ impl Channels<3> for RedBlueGreen {
 
     #[inline]
     fn pack([red, green, blue]: [i32; 3]) -> Self {
-        // Blue is never below 0 at a pixel, so what a negative step borrows from red is given back.
+        // A negative step of blue borrows from red. Blue itself is never negative at a pixel, so there red is whole again.
         Self((red << 16).wrapping_add(blue), green)
     }
 
@@ -99,13 +110,13 @@ impl Channels<3> for RedBlueGreen {
     }
 }
 
-/// The word of whole channels, 0 … 255.
+/// The word of red, green and blue, each a whole number of 0 … 255.
 #[inline]
 pub(crate) fn color<F: PixelFormat>([red, green, blue]: [u32; 3]) -> F::Word {
     F::rgb888(red as u8, green as u8, blue as u8)
 }
 
-/// A texel times light.
+/// The word of a texel times light, of which 255 is full in each channel.
 #[inline]
 pub(crate) fn lit<F: PixelFormat>(texel: u16, light: [u32; 3]) -> F::Word {
     // 0 … 256, so that full light leaves a texel as it is.

@@ -1,4 +1,8 @@
-//! The arrow into a shader: a span with the memory of its pixels.
+//! What is passed to a shader: a run, that is, a span of visible pixels with their memory.
+//!
+//! - In: a span, and the words of its pixels.
+//! - Out: the same for a shader, as `Pixels` that it fills.
+//! - Assumes: all of the pixels are visible: depth was tested, if at all.
 
 use super::fill::Fill;
 use super::quality::Quality;
@@ -6,7 +10,7 @@ use super::quality::sealed::Sealed;
 use super::shader::Pixels;
 use crate::raster::Span;
 
-/// A [`Span`] and its pixels.
+/// A [`Span`] and the words of its pixels, which say how many there are.
 pub(crate) struct Run<'a, W> {
     pub(crate) span: Span<'a>,
     pub(crate) pixels: &'a mut [W],

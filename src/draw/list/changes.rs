@@ -1,8 +1,10 @@
 //! Rendering only what changed since the last frame: on a serial display the bus is slower than the chip.
 //!
-//! - In: a display list, and what the last frame drew to.
-//! - Out: the bands in which something changed, with the rectangle that did.
-//! - Assumes: what is outside the list stays as it was, unless it is marked.
+//! - In: a display list, and the areas that the last frame drew to.
+//! - Out: the bands in which something may have changed, each with the rectangle around it.
+//! - Assumes: all that is not in the list, the background and 2D on top, stays as it was unless it is marked.
+//!
+//! No pixels are compared. Of each band the area that this frame or the last drew to is drawn and sent again; the rest is not.
 
 use super::display_list::DisplayList;
 use super::extent::Extent;
@@ -13,16 +15,17 @@ use embedded_graphics::primitives::Rectangle;
 
 /// What the last frame drew to, for [`DisplayList::render_changed`]: 8 bytes for each of `BANDS` bands.
 ///
-/// A display keeps what it was sent. Where neither this frame nor the last has a triangle it shows the background, and keeps on
-/// showing it: only the rest is drawn and sent. That is exact as long as all else stays the same. If the background changes, call
-/// [`Changes::everything`], as after anything else that was sent to the display; if what you draw on top does, [`Changes::mark`] where it was and where it is.
+/// A display keeps what it was sent. Where neither this frame nor the last has a triangle, it shows the background already:
+/// only the rest is drawn and sent. That is exact as long as all else stays the same. If the background changes, or if
+/// anything else was sent to the display, call [`Changes::everything`]. If what you draw on top changes, [`Changes::mark`]
+/// both where it was and where it is.
 #[derive(Clone, Debug)]
 pub struct Changes<const BANDS: usize> {
-    /// What the last frame drew to.
+    /// For each band the area that the last frame drew to.
     last: [Extent; BANDS],
-    /// What is to be sent anyhow.
+    /// The area that is to be sent with the next frame in any case.
     marked: Extent,
-    /// Width and height of bands, and the height of the screen.
+    /// The size of a band, and the height of the screen.
     shape: (Size, u32),
 }
 
@@ -46,13 +49,13 @@ impl<const BANDS: usize> Changes<BANDS> {
         Self { last: [Extent::NONE; BANDS], marked: Extent::ALL, shape: (Size::zero(), 0) }
     }
 
-    /// The next frame is drawn and sent whole.
+    /// Has the next frame drawn and sent whole.
     pub const fn everything(&mut self) {
         self.marked = Extent::ALL;
     }
 
-    /// An area of the screen is sent with the next frame, whatever is drawn there. Of several areas all that the smallest rectangle
-    /// around them holds.
+    /// Has an area of the screen sent with the next frame, whatever is drawn there. Of several areas it is the smallest rectangle
+    /// around all of them.
     pub fn mark(&mut self, area: &Rectangle) {
         let side = |start: i32, length: u32| {
             let end = (i64::from(start) + i64::from(length)).clamp(0, i16::MAX.into());
@@ -75,14 +78,15 @@ where
     S: Shader<F>,
     F: PixelFormat,
 {
-    /// As [`DisplayList::render_bands`], without what is on the display already: bands in which nothing changed are skipped, and
-    /// `flush` is given the rectangle of each other that did, which [`Band::colors_in`] and [`Band::rows_in`] give out.
+    /// As [`DisplayList::render_bands`], without what is on the display already. Bands in which nothing changed are skipped.
+    /// For each of the others `flush` gets the rectangle that changed; [`Band::colors_in`] and [`Band::rows_in`] give its
+    /// pixels.
     ///
     /// Bands beyond the first `BANDS` are drawn and flushed whole.
     ///
     /// # Errors
     ///
-    /// The first of `flush`. The rest is not drawn then; the next frame will send it.
+    /// The first of `flush`. The rest is not drawn then; the next frame is drawn and sent whole.
     pub fn render_changed<'b, const BANDS: usize, Z: DepthFormat, E>(
         &self,
         height: u32,

@@ -4,6 +4,7 @@
 //! - Out: bands of a few rows, with the bytes of a whole frame.
 //! - Assumes: the bands of one frame share its width.
 
+use super::capacity::CapacityError;
 use super::entries::{ListTriangle, ListVertex, ListView, MOST_SLOTS};
 use super::extent::Extent;
 use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
@@ -369,36 +370,3 @@ impl<const V: usize, const T: usize, const D: usize, S, F: PixelFormat> fmt::Deb
             .finish_non_exhaustive()
     }
 }
-
-/// A display list is full; it is as it was before the draw that did not fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CapacityError {
-    /// Of vertices, `V`: of those that stay, and all of the mesh that is drawn.
-    Vertices {
-        /// How many there can be.
-        capacity: usize,
-    },
-    /// Of triangles, `T`.
-    Triangles {
-        /// How many there can be.
-        capacity: usize,
-    },
-    /// Of draws, `D`.
-    Draws {
-        /// How many there can be.
-        capacity: usize,
-    },
-}
-
-impl fmt::Display for CapacityError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (capacity, what) = match self {
-            Self::Vertices { capacity } => (capacity, "vertices"),
-            Self::Triangles { capacity } => (capacity, "triangles"),
-            Self::Draws { capacity } => (capacity, "draws"),
-        };
-        write!(f, "the display list has no room for more than {capacity} {what}")
-    }
-}
-
-impl core::error::Error for CapacityError {}

@@ -1,49 +1,65 @@
 //! What a display list keeps: vertices of 16 bytes and triangles of 8.
+//!
+//! - In: the slots of a triangle's corners, and the mesh that they came from.
+//! - Out: the corners as screen vertices, for set-up; a key to sort by; a bounding box.
+//! - Assumes: the inputs are those of the shader that the triangle was recorded with.
+//!
+//! A *slot* is a place in a list's array of vertices. The attributes of a vertex depend on its shader's inputs:
+//!
+//! | inputs | attributes, four words of 16 bits |
+//! |---|---|
+//! | none | not used |
+//! | u, v | fraction of u, whole texels of u, the same of v |
+//! | colour | red, green, blue, not used |
+//! | u, v, colour | red, green, blue, the index of the mesh's vertex that has u and v |
+//!
+//! Clipping and flat shading make corners that are no vertices of a mesh. With both colour and texture such a corner takes two
+//! slots: [`IN_NEXT`] is in place of the index, and u and v are in the next slot, whose x is [`CUT_OFF`].
 
 use crate::frame::Window;
 use crate::geometry::{Inputs, ScreenVertex, is_gray};
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
 use crate::scene::Vertex;
 
-/// A screen vertex in a list.
-///
-/// What is beyond position and q are the attributes that its shader reads: u and v; or a colour; or a colour and the vertex of
-/// the mesh that has u and v. A corner that clipping made, with colour *and* texture, takes the slot behind it too, for u and v.
+/// A screen vertex in a list: position, q and the attributes that its shader reads.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ListVertex {
     pub(crate) x: I12F4,
     pub(crate) y: I12F4,
-    /// While a mesh is recorded the top bit is [`KEPT`].
+    /// near/w. While a mesh is recorded the top bit is [`KEPT`].
     pub(crate) q: U1F31,
+    /// While a mesh is recorded the last one, in a vertex that is kept, is the slot that it will have at the end.
     pub(crate) attributes: [u16; 4],
 }
 
 const _: () = assert!(size_of::<ListVertex>() == 16);
 
-/// A triangle that is drawn has this vertex. (q is below 1.)
+/// A flag in [`ListVertex::q`]: a recorded triangle has this vertex. (The bit is free, since q is below 1.)
 pub(crate) const KEPT: U1F31 = U1F31::from_bits(1 << 31);
-/// x of a vertex that has to be cut off, and of a slot that is none.
+/// x of a slot without a position: while a mesh is recorded, of a vertex that has to be clipped; in a list, of a slot that
+/// holds u and v of the slot before.
 pub(crate) const CUT_OFF: I12F4 = I12F4::MIN;
-/// In the place of a mesh's vertex: u and v are in the next slot, if that is none for itself.
+/// In place of the index of a mesh's vertex: u and v are in the next slot, if x is [`CUT_OFF`] there. (If not, it is an index.)
 pub(crate) const IN_NEXT: u16 = u16::MAX;
-/// The most slots and triangles.
+/// The most slots of a list, and its most triangles.
 pub(crate) const MOST_SLOTS: usize = u16::MAX as usize;
 
 /// A triangle in a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ListTriangle {
-    /// Slots, of the corners clockwise on the screen, the nearest first.
+    /// The slots of the corners, clockwise on the screen, the nearest first.
     pub(crate) corners: [u16; 3],
-    /// The first and the last row that it touches, in [`ROWS_LOG2`].
+    /// The first and the last row that it touches, in units of 4 rows (see [`ROWS_LOG2`]).
     pub(crate) rows: [u8; 2],
 }
 
 const _: () = assert!(size_of::<ListTriangle>() == 8);
 
-/// The index by rows has steps of 4 rows: 1023 fit a byte.
+/// Rows are kept in units of 2² = 4: those of the tallest screen, 0 … 1022, fit a byte.
 pub(crate) const ROWS_LOG2: u32 = 2;
 
 impl ListVertex {
+    /// A vertex whose attributes are still to be set.
     pub(crate) fn new(at: &ScreenVertex) -> Self {
         Self { x: at.x, y: at.y, q: at.q, attributes: [0; 4] }
     }
@@ -54,23 +70,25 @@ impl ListVertex {
         [u as u16, (u >> 16) as u16, v as u16, (v >> 16) as u16]
     }
 
+    /// u and v from attributes: the reverse of [`ListVertex::attributes_of`].
     fn uv(&self) -> [I16F16; 2] {
         let [u, u_whole, v, v_whole] = self.attributes.map(u32::from);
         [u | u_whole << 16, v | v_whole << 16].map(|bits| I16F16::from_bits(bits as i32))
     }
 
-    /// Of a vertex with colour.
+    /// Whether red, green and blue are the same, in a vertex that has a colour.
     pub(crate) fn is_gray(&self) -> bool {
         let [red, green, blue, _] = self.attributes;
         is_gray([red, green, blue])
     }
 
+    /// x and y in 1/16 px.
     pub(crate) fn position(&self) -> [i32; 2] {
         [self.x, self.y].map(|at| at.to_bits().into())
     }
 }
 
-/// A list as far as it does not depend on the shader.
+/// The vertices and triangles of a list, which do not depend on the type of its shader.
 #[derive(Clone, Copy)]
 pub(crate) struct ListView<'l> {
     pub(crate) vertices: &'l [ListVertex],
@@ -78,7 +96,8 @@ pub(crate) struct ListView<'l> {
 }
 
 impl ListView<'_> {
-    /// A triangle's corners for set-up, as they went into the list; attributes not among the inputs are left as they are.
+    /// Writes a triangle's corners to `to`, for set-up: position, q and those attributes that are among the inputs. Any
+    /// others are of no use.
     #[inline]
     pub(crate) fn corners(
         &self,
@@ -92,6 +111,7 @@ impl ListView<'_> {
         }
     }
 
+    /// Writes the vertex in a slot to `to`, as [`ListView::corners`].
     #[inline]
     fn fetch(&self, slot: u16, inputs: Inputs, mesh: &[Vertex], to: &mut ScreenVertex) {
         let Some(at) = self.vertices.get(usize::from(slot)) else {
@@ -117,13 +137,14 @@ impl ListView<'_> {
         }
     }
 
-    /// Three times how near a triangle's middle is, in near/w with 29 fraction bits.
+    /// The sum of near/w at a triangle's corners, with 29 fraction bits: three times that at its middle. Greater is nearer.
     pub(crate) fn nearness(&self, triangle: &ListTriangle) -> u32 {
         let q = |slot: u16| self.vertices.get(usize::from(slot)).map_or(0, |vertex| vertex.q.to_bits() >> 2);
         triangle.corners.iter().map(|&slot| q(slot)).sum()
     }
 
-    /// The columns and rows of the pixel centres within a triangle's bounding box: the first, and the one behind the last.
+    /// The pixel centres within a triangle's bounding box: [start, end] of the columns and [start, end] of the rows, both ends
+    /// exclusive.
     pub(crate) fn bounds(&self, triangle: &ListTriangle) -> [[i32; 2]; 2] {
         let at = |slot: u16| self.vertices.get(usize::from(slot)).map_or([0; 2], ListVertex::position);
         let [a, b, c] = triangle.corners.map(at);

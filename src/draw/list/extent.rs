@@ -1,10 +1,11 @@
-//! A rectangle of pixels in 8 bytes: what the triangles of a band touch.
+//! An extent: a rectangle of pixels in 8 bytes, which holds all that the triangles of a band touch.
 
 use crate::frame::Window;
 use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::primitives::Rectangle;
 
-/// A rectangle of pixels; empty unless both ends lie behind both starts.
+/// A rectangle of pixels, from `left` to `right` and from `top` to `bottom`, ends exclusive. It is empty unless each end lies
+/// after its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Extent {
     pub(super) left: i16,
@@ -16,10 +17,12 @@ pub(crate) struct Extent {
 const _: () = assert!(size_of::<Extent>() == 8);
 
 impl Extent {
+    /// No pixel.
     pub(crate) const NONE: Self = Self { left: i16::MAX, right: 0, top: i16::MAX, bottom: 0 };
+    /// All pixels that there may be.
     pub(super) const ALL: Self = Self { left: 0, right: i16::MAX, top: 0, bottom: i16::MAX };
 
-    /// From columns and rows, both with the one behind the last, that fit.
+    /// From [start, end] of columns and [start, end] of rows, ends exclusive. All of them fit an `i16`.
     pub(crate) fn new(bounds: [[i32; 2]; 2]) -> Self {
         let [[left, right], [top, bottom]] = bounds.map(|ends| ends.map(|end| end as i16));
         Self { left, right, top, bottom }
@@ -29,6 +32,7 @@ impl Extent {
         self.left >= self.right || self.top >= self.bottom
     }
 
+    /// The least extent that holds both.
     pub(crate) fn union(self, other: Self) -> Self {
         if self.is_empty() {
             return other;
@@ -44,6 +48,7 @@ impl Extent {
         }
     }
 
+    /// The part of it that lies in a window.
     pub(crate) fn within(self, window: &Window) -> Self {
         Self {
             left: self.left.max(window.columns.start as i16),

@@ -1,49 +1,56 @@
 //! Which triangles of a list touch a band, and in which order they are drawn.
 //!
-//! - In: the rows of each triangle, or an order of them.
-//! - Out: one triangle after the other.
-//! - Assumes: the index is as new as the list.
+//! - In: a list's triangles, each with its rows; and its index: either the rows of each block of 32, or an order of drawing.
+//! - Out: the triangles that touch the band, one after another, with their numbers.
+//! - Assumes: the index was made after the last change of the list.
+//!
+//! In the order in which they were recorded, whole blocks of triangles are skipped that do not touch the band. A list that is
+//! sorted has an order instead of blocks: there every triangle is tested. Rows are in units of 4 here (see `ROWS_LOG2`), and
+//! ranges of them are inclusive: the first and the last.
 
 use super::entries::{ListTriangle, ROWS_LOG2};
 use crate::frame::Window;
 
 /// How a list finds the triangles of a band.
 pub(crate) enum Index<'l> {
-    /// All are looked at, in this order.
+    /// The numbers of all triangles, in the order of drawing. Each triangle is tested.
     Order(&'l [u16]),
-    /// Those of blocks that touch the band.
+    /// The first (lower byte) and the last row (upper byte) of each block of [`BLOCK`] triangles. They are drawn as they were
+    /// recorded.
     Rows(&'l [u16]),
 }
 
-/// How many triangles have one entry in the index: of s4 in bands of 16 rows 32 cost least, by 0.1 to 0.5 %.
+/// How many triangles have one entry in the index. In bands of 16 rows of the benchmark scene s4 (`examples/firmware/src/s4.rs`)
+/// 32 cost least, by 0.1 to 0.5 %.
 pub(crate) const BLOCK: usize = 32;
 
-/// The rows that some triangles touch.
+/// The first and the last row that a block of triangles touches.
 pub(crate) fn rows_of(block: &[ListTriangle]) -> [u8; 2] {
     block.iter().fold([u8::MAX, 0], |[first, last], triangle| {
         [first.min(triangle.rows[0]), last.max(triangle.rows[1])]
     })
 }
 
-/// A window's rows in steps of the index: the first and the last. Of an empty window nonsense.
+/// A window's first and last row, in units of 4 rows. Of no meaning for an empty window.
 pub(crate) fn steps_of(window: &Window) -> [u8; 2] {
     [window.rows.start, window.rows.end - 1].map(|row| (row.clamp(0, 1023) >> ROWS_LOG2) as u8)
 }
 
-/// Whether rows of the index, from the first to the last, touch others.
+/// Whether two ranges of rows, each from its first to its last, overlap.
 #[inline]
 pub(crate) fn touch([first, last]: [u8; 2], [start, end]: [u8; 2]) -> bool {
-    // One branch.
+    // Neither difference is negative: both signs in one branch.
     ((i32::from(end) - i32::from(first)) | (i32::from(last) - i32::from(start))) >= 0
 }
 
-/// The triangles that touch some rows.
+/// The triangles of a list that touch some rows, one after another.
 pub(crate) struct Touching<'l> {
     triangles: &'l [ListTriangle],
     index: Index<'l>,
     rows: [u8; 2],
-    /// The next place in the order or among the triangles, and the end of its block.
+    /// The next place in the order; without one, the number of the next triangle.
     at: usize,
+    /// Without an order: the end (exclusive) of the current block.
     end: usize,
 }
 
@@ -52,14 +59,14 @@ impl<'l> Touching<'l> {
         Self { triangles, index, rows, at: 0, end: 0 }
     }
 
-    /// The next, with its number.
+    /// The number of the next triangle that touches the rows, and the triangle.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> Option<(u16, &'l ListTriangle)> {
         let blocks = match self.index {
             Index::Rows(blocks) => blocks,
             Index::Order(order) => {
-                let (behind, id, triangle) = next_in_order(self.triangles, order, self.rows, self.at)?;
-                self.at = behind;
+                let (after, id, triangle) = next_in_order(self.triangles, order, self.rows, self.at)?;
+                self.at = after;
                 return Some((id, triangle));
             }
         };
@@ -71,7 +78,7 @@ impl<'l> Touching<'l> {
                     self.at = self.end;
                 }
             }
-            // Of the last block there may be less.
+            // The last block may be shorter.
             let triangle = self.triangles.get(self.at)?;
             self.at += 1;
             if touch(triangle.rows, self.rows) {
@@ -81,8 +88,8 @@ impl<'l> Touching<'l> {
     }
 }
 
-/// The place behind the next of the order that touches, from `at` on, its number, and itself. It knows nothing of [`Touching`], so
-/// that that stays in registers.
+/// Finds the next triangle that touches `rows`, from the place `at` in the order on. Returns the place after it, its number,
+/// and the triangle. It takes no reference to [`Touching`], so that the caller can keep that in registers.
 #[inline(never)]
 fn next_in_order<'l>(
     triangles: &'l [ListTriangle],
@@ -96,7 +103,8 @@ fn next_in_order<'l>(
     })
 }
 
-/// By keys that all differ: a heap sort, in place and without the recursion of the library's, which takes 4 KiB of stack.
+/// Sorts by key, the least first. A heap sort: in place and without recursion, where the library's sort takes 4 KiB of stack.
+/// It is not stable, so all keys have to differ.
 pub(crate) fn sort(ids: &mut [u16], key: impl Fn(u16) -> (u32, u16)) {
     let sift = |ids: &mut [u16], mut root: usize| {
         while 2 * root + 1 < ids.len() {

@@ -1,5 +1,6 @@
 //! The display list: a frame is recorded once, and rendered in bands.
 
+mod capacity;
 mod changes;
 mod display_list;
 mod entries;
@@ -7,5 +8,6 @@ mod extent;
 mod index;
 mod record;
 
+pub use capacity::CapacityError;
 pub use changes::{Changes, Flushed};
-pub use display_list::{CapacityError, DisplayList};
+pub use display_list::DisplayList;

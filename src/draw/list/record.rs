@@ -1,8 +1,12 @@
-//! One mesh recorded: the geometry of a mesh, kept in a display list for later.
+//! Recording: one mesh is transformed, culled, clipped and lit, and appended to a display list.
 //!
-//! - In: a mesh, its pose, a camera's projection.
-//! - Out: list vertices and list triangles of what is seen.
-//! - Assumes: the caller restores the lengths of the list after an error.
+//! - In: a mesh, its pose, a camera's pose and projection.
+//! - Out: list vertices and list triangles: those that are neither culled nor outside the viewport.
+//! - Assumes: after an error the caller truncates the list to the lengths that it had.
+//!
+//! It does for a list what assembly does for a band that is drawn at once, but without a cache. First the mesh's vertices are
+//! transformed, each into a *slot*, a place in the list's array of vertices. Those that turn out to be used are kept and lit.
+//! After the last triangle the slots of the others are freed.
 
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use crate::frame::{PixelFormat, Window};
@@ -22,7 +26,7 @@ pub(crate) enum Full {
     Triangles,
 }
 
-/// What a shader wants of the vertices.
+/// What a shader wants of the vertices and triangles.
 pub(crate) struct Style {
     cull: Cull,
     pub(crate) inputs: Inputs,
@@ -30,7 +34,7 @@ pub(crate) struct Style {
 }
 
 impl Style {
-    /// Not inlined: what it takes is not on the stack while a mesh is recorded.
+    /// Not inlined, so that its stack frame is gone while a mesh is recorded.
     #[inline(never)]
     pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Self {
         Self { cull: shader.cull(), inputs: shader.inputs(), coloring: shader.coloring(pose) }
@@ -43,8 +47,8 @@ impl Style {
 
 /// Adds one mesh to a list.
 ///
-/// Each vertex of the mesh has its slot at first: that is what makes a vertex transformed once and found at once. At the end
-/// those of no triangle that is drawn are given back, and the others move together.
+/// At first every vertex of the mesh has a slot. So each is transformed once, and found by adding `to_slot` to its index. At
+/// the end the slots of vertices that no recorded triangle uses are freed, and the others are compacted.
 struct Recorder<'l, 'm> {
     vertices: &'l mut VecView<ListVertex>,
     triangles: &'l mut VecView<ListTriangle>,
@@ -53,17 +57,18 @@ struct Recorder<'l, 'm> {
     clip: Clip,
     style: &'l Style,
     window: Window,
-    /// The slot of the mesh's vertex 0, or what would be it, wrapping.
+    /// What is added to a vertex's index, wrapping, to get its slot.
     to_slot: usize,
-    /// The mesh's slots.
+    /// The slots of the mesh's vertices. After them come corners that clipping or flat shading makes.
     own: core::ops::Range<usize>,
+    /// Whether any vertex has to be clipped: see [`CUT_OFF`].
     is_any_cut_off: bool,
-    /// The slot that the next vertex will have that is kept.
+    /// The final slot of the next vertex that is kept.
     next: u16,
 }
 
-/// Adds what is seen of a mesh to a list, whose lengths the caller restores after an error. Returns whether all its colours are
-/// grey.
+/// Appends what is in view of a mesh to a list, whose lengths the caller restores after an error. Returns whether all colours
+/// that it recorded are grey: false in a style without colours, but true of a mesh that is out of view as a whole.
 pub(crate) fn record(
     vertices: &mut VecView<ListVertex>,
     triangles: &mut VecView<ListTriangle>,
@@ -110,10 +115,11 @@ pub(crate) fn record(
     Ok(recorder.move_together(first, first_triangle))
 }
 
-/// The first and the last vertex that are given slots, of which there are `most`: of a part of a mesh no more than it names.
+/// The first and the last vertex that get a slot, with all between them; `None` if no vertex does. There are `most` slots.
 ///
-/// Where there are as many triangles as vertices it is none, most likely, and all vertices have slots if these are enough: to look
-/// at all triangles takes as long as to transform a tenth of the vertices.
+/// If the mesh is a part of a larger one, whose vertices it shares, these are the first and the last that its triangles use.
+/// To find them takes as long as to transform a tenth of the vertices. A mesh with at least as many triangles as vertices is
+/// most likely a whole one: all its vertices get slots, if there are so many, and nothing is searched.
 #[inline(never)]
 fn named(mesh: &Mesh<'_>, most: usize) -> Option<[u16; 2]> {
     let count = mesh.vertices().len();
@@ -128,7 +134,7 @@ fn named(mesh: &Mesh<'_>, most: usize) -> Option<[u16; 2]> {
 }
 
 impl Recorder<'_, '_> {
-    /// Every vertex that the mesh names goes to its slot. There is room.
+    /// Transforms vertices into their slots, from the mesh's vertex `first` on. The caller has checked that there is room.
     #[inline(never)]
     fn place(&mut self, first: u16, stats: &mut impl Count) {
         let _ = self.vertices.resize_default(self.own.end);
@@ -143,12 +149,14 @@ impl Recorder<'_, '_> {
         }
     }
 
+    /// Where a vertex of the mesh is on the screen, x and y in 1/16 px.
     #[inline]
     fn at(&self, index: u16) -> [i32; 2] {
         let slot = usize::from(index).wrapping_add(self.to_slot);
         self.vertices.get(slot).map_or([0; 2], ListVertex::position)
     }
 
+    /// Culls, clips and records the mesh's triangles.
     #[inline(never)]
     fn add_triangles(&mut self, stats: &mut impl Count) -> Result<(), Full> {
         let is_faceted = self.style.coloring.is_faceted();
@@ -179,7 +187,8 @@ impl Recorder<'_, '_> {
         Ok(())
     }
 
-    /// The rows of a triangle if it is not out of the viewport, in steps of the index.
+    /// The first and the last row of a triangle in the viewport, in units of 4 rows (see [`ROWS_LOG2`]). `None` if no pixel
+    /// centre of the viewport lies in the triangle's bounding box. Counts which of the two it is.
     #[inline]
     fn rows_if_seen(&self, [a, b, c]: [[i32; 2]; 3], stats: &mut impl Count) -> Option<[u8; 2]> {
         let within = |axis: usize, range: &core::ops::Range<i32>| {
@@ -196,14 +205,16 @@ impl Recorder<'_, '_> {
         Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
     }
 
-    /// From slots and q, in the order in which set-up takes its corners, which is found once for all bands.
+    /// Records a triangle, from the slots and q of its corners. They are put in the order in which set-up takes them, once
+    /// for all bands.
     #[inline(always)]
     fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
         let corners = in_order(corners, area, |(_, q)| q.to_bits()).map(|(slot, _)| slot);
         self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
-    /// The slot that a vertex will have, and q. It is lit when it turns out that it is seen.
+    /// Keeps a vertex of the mesh; returns the slot that it will have at the end, and q. When it is kept for the first time
+    /// it gets its colour, and this final slot is stored in `attributes[3]` until [`Recorder::move_together`].
     #[inline]
     fn keep(&mut self, index: u16) -> (u16, U1F31) {
         let slot = usize::from(index).wrapping_add(self.to_slot);
@@ -227,7 +238,7 @@ impl Recorder<'_, '_> {
         (next, q)
     }
 
-    /// With the light of its face: corners of its own.
+    /// Records a triangle with flat shading. Its colours are its own, so its corners are too: they are appended.
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
         let mut corners = [(0, U1F31::ZERO); 3];
@@ -249,7 +260,8 @@ impl Recorder<'_, '_> {
         self.add(corners, area, rows)
     }
 
-    /// The pieces of a triangle that has to be cut, as a fan.
+    /// Clips a triangle and records its pieces, a fan around the polygon's first corner. Pieces share the corners that they
+    /// append.
     #[cold]
     #[inline(never)]
     fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) -> Result<(), Full> {
@@ -289,7 +301,7 @@ impl Recorder<'_, '_> {
         Ok(())
     }
 
-    /// A corner that no vertex of the mesh stands for: its slot, until [`Recorder::move_together`].
+    /// Appends a corner that clipping or flat shading made. Returns its slot, which [`Recorder::move_together`] will shift down.
     fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
         let slot = self.vertices.len();
         let uv = ListVertex::attributes_of([at.u, at.v]);
@@ -315,13 +327,15 @@ impl Recorder<'_, '_> {
         self.vertices.push(slot).map_err(|_| Full::Vertices)
     }
 
-    /// Gives back the slots of vertices that are not seen, and completes the others. Returns whether all colours are grey.
+    /// Compacts the kept vertices of the mesh, in the order in which they were kept. They also get what is still missing: u
+    /// and v, or the index of the mesh's vertex that has them. Then shifts the corners that were appended after them. Returns
+    /// whether all colours are grey.
     #[inline(never)]
     fn move_together(self, first: u16, first_triangle: usize) -> bool {
         let Self { vertices, triangles, mesh, style, own, next, .. } = self;
         let mut all_gray = style.has_color();
-        for hole in own.clone() {
-            let Some(place) = vertices.get_mut(hole) else {
+        for first_of_cycle in own.clone() {
+            let Some(place) = vertices.get_mut(first_of_cycle) else {
                 break;
             };
             if place.q & KEPT == U1F31::ZERO {
@@ -329,8 +343,9 @@ impl Recorder<'_, '_> {
             }
             let mut vertex = *place;
             place.q &= !KEPT;
-            // Each goes where it belongs, and takes the place of one that goes on.
-            let mut from = hole;
+            // A cycle: the vertex goes to its final slot, then the one that was there to its own. It ends at a slot whose vertex
+            // was not kept or has been moved.
+            let mut from = first_of_cycle;
             while vertex.q & KEPT != U1F31::ZERO {
                 let to = usize::from(vertex.attributes[3]);
                 all_gray &= vertex.is_gray();
@@ -366,7 +381,7 @@ impl Recorder<'_, '_> {
         all_gray
     }
 
-    /// Moves the slots from `start` on that far down. Returns whether all colours are grey.
+    /// Moves the vertices in the slots from `start` on down by `by` slots. Returns whether all their colours are grey.
     #[cold]
     #[inline(never)]
     fn move_down(vertices: &mut VecView<ListVertex>, start: usize, by: usize) -> bool {
