@@ -1,5 +1,6 @@
 //! The promise: README's first program compiles and runs in a new project as it stands, on a stack of 128 KiB, and the example and the
-//! crate's front page show the same lines.
+//! crate's front page show the same lines. And the tables of tests/README.md
+//! name tests that there are.
 
 use std::fs;
 use std::path::Path;
@@ -70,4 +71,22 @@ fn readmes_first_program_runs_in_a_new_project_on_a_small_stack() {
     for color in ["38;2;255;251;255m", "38;2;255;215;0m"] {
         assert!(shown.contains(color), "{color:?} is not in the picture");
     }
+}
+
+#[test]
+fn the_tables_name_tests_that_there_are() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut count = 0;
+    for line in include_str!("README.md").lines().filter(|line| line.starts_with('|')) {
+        for name in line.split('`').skip(1).step_by(2) {
+            let Some((file, function)) = name.split_once("::") else { continue };
+            let file = if file.contains('/') { format!("{file}.rs") } else { format!("tests/{file}.rs") };
+            let text =
+                std::fs::read_to_string(root.join(&file)).unwrap_or_else(|_| panic!("{name}: no {file}"));
+            assert!(text.contains(&format!("fn {function}(")), "{name}: {file} has no such test");
+            count += 1;
+        }
+    }
+    println!("{count} tests are named");
+    assert!(count > 120);
 }
