@@ -250,9 +250,7 @@ impl Placer<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
-        let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
-            return stats.count(|stats| &mut stats.rejected);
-        };
+        let count = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }
@@ -286,19 +284,20 @@ impl Placer<'_> {
 /// A point of the world on the screen.
 pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
     let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
-    let mut at = ScreenVertex::default();
-    Clip::new(projection, to_clip.unit_bits())
-        .place(&to_clip, &Coloring::default(), &Vertex::default(), &mut at)
-        .then_some(at)
+    let mut at = [ScreenVertex::default(); MOST_CORNERS];
+    // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
+    let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
+    let count = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
+    at.first().filter(|_| count > 0).copied()
 }
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
-/// Only the rows of `band` are drawn, and only what `cull` does not leave out.
+/// Positions within ±1023½ px may be given: columns and rows −1023 … 1022 lie inside. Only the rows of `band` are drawn, and only what `cull` does not leave out.
 ///
 /// # Errors
 ///
-/// [`RangeError`] if a vertex lies outside the guard band or a texture coordinate beyond ±8192
+/// [`RangeError`] if a vertex lies outside the guard band of ±1023½ px or a texture coordinate beyond ±8192
 /// texels; nothing is drawn then.
 pub fn draw_triangle<F, D, S>(
     vertices: &[ScreenVertex; 3],
@@ -399,7 +398,7 @@ where
     }
 }
 
-/// A vertex lies outside the guard band, or its texture coordinates are out of range.
+/// A vertex lies outside the guard band of ±1023½ px, or its texture coordinates are out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RangeError;
 
@@ -407,7 +406,7 @@ impl fmt::Display for RangeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "a screen vertex lies outside -1024 to 1023 px or its texture coordinates outside ±8192 texels"
+            "a screen vertex lies outside -1023.5 to 1023.5 px or its texture coordinates outside ±8192 texels"
         )
     }
 }

@@ -9,7 +9,7 @@ mod projection;
 pub mod shapes;
 mod texture;
 
-pub use camera::{Camera, Projected};
+pub use camera::{Camera, PlaneError, Projected};
 pub use drawables::{CornersError, PerspectiveImage, ShadedTriangle};
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub use material::{Material, Textured};
