@@ -273,7 +273,6 @@ fn run() -> Result<(), Box<dyn Error>> {
     print("triangles clipped", |stats| stats.clipped);
     print("culled", |stats| stats.culled);
     print("out of sight", |stats| stats.out_of_sight);
-    print("rejected", |stats| stats.rejected);
     print("drawn", |stats| stats.drawn);
     Ok(())
 }

@@ -153,7 +153,7 @@ const NONE: u16 = u16::MAX;
 const MOST_TRIANGLES: u32 = NONE as u32;
 
 /// The guard band, in 1/16 pixel.
-const GUARD_BAND: std::ops::RangeInclusive<i32> = -1024 * 16..=1023 * 16;
+const GUARD_BAND: std::ops::RangeInclusive<i32> = -(1023 * 16 + 8)..=1023 * 16 + 8;
 
 struct Case {
     size: Size,

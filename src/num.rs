@@ -11,7 +11,7 @@
 //! | quaternion | [`I2F30`] | −2 … 2 | 2⁻³⁰ |
 //! | scale of a pose | [`U10F22`] | 0 … 1023.9999998 | 2.4·10⁻⁷ |
 //! | world position | [`I16F16`] | −32768 … 32767.99998 | 1/65536 |
-//! | screen position | [`I12F4`] | guard band −1024 … 1023 px | 1/16 px |
+//! | screen position | [`I12F4`] | guard band ±1023½ px | 1/16 px |
 //! | q = near/w | [`U1F31`] | 0 … 1 − 2⁻³¹ | 2⁻³¹ |
 //! | texture coordinate on screen | [`I16F16`] | −8192 … 8192 texels | 2⁻¹⁶ texel |
 //! | colour channel on screen | [`U8F8`] | 0 … 255 is dark … full | 1/256 |
@@ -99,6 +99,19 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
 #[inline]
 pub(crate) const fn mul_high(a: i32, b: i32) -> i32 {
     (wide(a, b) >> 32) as i32
+}
+
+/// `a · b / 2³⁰`, rounded down, for an `a` within ±2⁵⁹ if the result is.
+///
+/// Not inlined on Armv6-M: of three wide multiplies there is one copy.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn mul_long(a: i64, b: i32) -> i64 {
+    if a == a as i32 as i64 {
+        return wide(a as i32, b) >> 30;
+    }
+    let (upper, lower) = ((a >> 30) as i32, (a & ((1 << 30) - 1)) as i32);
+    wide(upper, b) + (wide(lower, b) >> 30)
 }
 
 /// The upper 32 bits of `a · b` for a `b` of 0 … 2³¹, or up to 2 less: three short products on Armv6-M.

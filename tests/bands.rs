@@ -653,3 +653,91 @@ fn parts_of_a_band_are_given_out_by_rows_and_colours() {
     let (pixels, _) = band.into_slices();
     assert_eq!(pixels.len(), 60);
 }
+
+const SQUARE: [Vertex; 4] = [
+    Vertex::new(-1.0, 1.0, 0.0),
+    Vertex::new(-1.0, -1.0, 0.0),
+    Vertex::new(1.0, -1.0, 0.0),
+    Vertex::new(1.0, 1.0, 0.0),
+];
+
+/// Cameras that see nothing but a square of −1 … 1 turned by a pose, all over the viewport: which is the whole of the largest
+/// targets, or ends at their last column and row.
+fn cameras_that_a_square_fills() -> Vec<(Size, Camera, Pose)> {
+    let mut cases = Vec::new();
+    for (width, height) in [(1, 1023), (1023, 1), (1023, 1023), (1023, 40), (3, 1023)] {
+        let target = Size::new(width, height);
+        // From 512, where the square's own border is hardly beyond the target, to where all sides are far out.
+        for pixels in [512.0, 523.0, 600.0, 1500.0, 8000.0] {
+            for (left, top) in
+                [(0, 0), (width as i32 - 1, height as i32 / 2), (width as i32 / 3, height as i32 - 1)]
+            {
+                let corner = Point::new(left, top);
+                let size = Size::new(width - left as u32, height - top as u32);
+                for camera in [Camera::focal(pixels, size), Camera::orthographic(pixels, size)] {
+                    let camera = camera.viewport(corner).at(Vec3::lit(0.0, 0.0, 1.0));
+                    let upright = Pose::IDENTITY;
+                    let turned = upright.rotated_z(Turn::from_degrees(45)).scaled_lit(1.5);
+                    cases.push((target, camera, upright));
+                    cases.push((target, camera, turned));
+                    // Through the near plane, too.
+                    if !camera.is_orthographic() {
+                        let tilted = upright.rotated_y(Turn::from_degrees(40)).scaled_lit(12.0);
+                        cases.push((target, camera.near(0.01), tilted));
+                    }
+                }
+            }
+        }
+    }
+    cases
+}
+
+#[test]
+fn the_largest_targets_are_filled_up_to_the_last_row_and_column() {
+    const MESH: Mesh = Mesh::new(&SQUARE, &[[0, 1, 2], [0, 2, 3]]);
+    let white: Material = Material::flat(Rgb565::WHITE);
+    let cases = cameras_that_a_square_fills();
+    for (target, camera, pose) in &cases {
+        let words = (target.width * target.height) as usize;
+        let (mut pixels, mut depth) = (vec![0; words], vec![0; words]);
+        // Of the viewport all, and nothing around it; by the camera's own word where its middle is.
+        let (x, y) = camera.center();
+        let first = [x, y].map(|at| f64::from(at.to_bits()) / 16.0);
+        let start = [2.0 * first[0] - f64::from(target.width), 2.0 * first[1] - f64::from(target.height)];
+        let missing = |top: u32, depth: &[u16]| {
+            depth.iter().enumerate().find_map(|(i, depth)| {
+                let (column, row) = (i as u32 % target.width, top + i as u32 / target.width);
+                let inside = f64::from(column) >= start[0] && f64::from(row) >= start[1];
+                (inside != (*depth > 0)).then_some((column, row))
+            })
+        };
+        let mut band = Band::<Rgb565, Depth16>::new(*target, &mut pixels, &mut depth).expect("it fits");
+        camera.draw(&MESH, pose, &white, &mut band);
+        assert_eq!(missing(0, &depth), None, "at once, {target:?}, {camera:?}, {pose:?}");
+
+        let mut list = DisplayList::<40, 20, 1>::new();
+        camera.draw(&MESH, pose, &white, &mut list).expect("there is room");
+        for rows in [7, 512, 1023] {
+            for is_listed in [false, true] {
+                let mut top = 0;
+                while top < target.height {
+                    let rows = rows.min(target.height - top);
+                    let words = (target.width * rows) as usize;
+                    let (pixels, depth) = (&mut pixels[..words], &mut depth[..words]);
+                    depth.fill(0);
+                    let size = Size::new(target.width, rows);
+                    let mut band =
+                        Band::<Rgb565, Depth16>::new(size, pixels, depth).expect("it fits").starting_at(top);
+                    if is_listed {
+                        list.render(top, &mut band);
+                    } else {
+                        camera.draw(&MESH, pose, &white, &mut band);
+                    }
+                    assert_eq!(missing(top, depth), None, "{rows} rows, {target:?}, {camera:?}, {pose:?}");
+                    top += rows;
+                }
+            }
+        }
+    }
+    println!("{} cameras before a square fill their viewports", cases.len());
+}

@@ -765,3 +765,46 @@ fn a_display_may_leave_colours_and_ask_for_more() {
         assert_eq!(image.run::<3>().draw(&mut Careless(taken)), Ok(()));
     }
 }
+
+#[test]
+fn a_posed_picture_fills_the_largest_displays_up_to_the_last_row_and_column() {
+    let texture = Texture::new(&[WHITE; 4], 1, 1);
+    for (width, height) in [(1, 1023), (1023, 1), (1023, 200), (200, 1023)] {
+        let size = Size::new(width, height);
+        for pixels in [512.0, 523.0, 1500.0, 8000.0] {
+            for camera in [Camera::focal(pixels, size), Camera::orthographic(pixels, size)] {
+                let camera = camera.at(Vec3::lit(0.0, 0.0, 1.0));
+                let square = [I16F16::from_num(2); 2];
+                for pose in [Pose::IDENTITY, Pose::IDENTITY.rotated_z(Turn::from_degrees(45)).scaled_lit(1.5)]
+                {
+                    let mut screen = Screen::of(width, height);
+                    PerspectiveImage::posed(&texture, &camera, &pose, square)
+                        .draw(&mut screen)
+                        .expect("patience");
+                    let missing = (0..height as i32)
+                        .flat_map(|y| (0..width as i32).map(move |x| (x, y)))
+                        .find(|place| !screen.pixels.contains_key(place));
+                    assert_eq!(missing, None, "{size:?}, {camera:?}, {pose:?}");
+                }
+            }
+        }
+    }
+    // And columns and rows −1023 … 1022 of a larger one, from corners at the ends of the guard band.
+    let (low, high) = (*GUARD_BAND.start() as i16, *GUARD_BAND.end() as i16);
+    let corners = [(low, low), (low, high), (high, high), (high, low)].map(|(x, y)| ScreenVertex {
+        x: I12F4::from_bits(x),
+        y: I12F4::from_bits(y),
+        q: U1F31::MAX,
+        ..ScreenVertex::default()
+    });
+    let image = PerspectiveImage::new(&texture, &corners).expect("within range");
+    for (x, y, width, height) in [(-2000, 7, 4000, 1), (7, -2000, 1, 4000)] {
+        let mut screen = Screen::new(Rectangle::new(Point::new(x, y), Size::new(width, height)));
+        image.draw(&mut screen).expect("patience");
+        let ends = |axis: fn(&(i32, i32)) -> i32| {
+            (screen.pixels.keys().map(axis).min(), screen.pixels.keys().map(axis).max(), screen.pixels.len())
+        };
+        let found = if height == 1 { ends(|place| place.0) } else { ends(|place| place.1) };
+        assert_eq!(found, (Some(-1023), Some(1022), 2046));
+    }
+}

@@ -85,7 +85,7 @@ impl Dice {
             let mut vertices = [0, 1, 2].map(|_| {
                 let [x, y] = middle.map(|at| {
                     let at = at + self.within(-reach, reach);
-                    (at / lattice * lattice).clamp(-1024 * 16, 1023 * 16)
+                    (at / lattice * lattice).clamp(-1023 * 16 - 8, 1023 * 16 + 8)
                 });
                 let w = if level { w } else { self.fraction() };
                 let mut texels =

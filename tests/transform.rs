@@ -122,7 +122,7 @@ fn projected(name: &str, cases: u32, orthographic: bool) {
         let (near, far) = (eye.lens().near, eye.lens().far);
         let Some(projected) = camera.project(point) else {
             let inside =
-                at.iter().all(|at| (-1022.9..1021.9).contains(at)) && w > near * 1.001 && w < far * 0.999;
+                at.iter().all(|at| (-1022.7..1022.7).contains(at)) && w > near * 1.001 && w < far * 0.999;
             prop_assert!(!inside, "{:?} at {:?}, w {}, is not projected", point, at, w);
             return Ok(());
         };
@@ -307,16 +307,14 @@ fn no_mesh_is_left_out_that_has_a_pixel_and_counts_add_up_in_4_000_cases() {
             clipped,
             culled,
             out_of_sight,
-            rejected,
             drawn,
         } = stats;
         prop_assert_eq!((meshes, triangles), (1, if meshes_out_of_sight == 1 { 0 } else { 12 }));
         prop_assert!(meshes_out_of_sight <= 1 && clipped <= triangles && transformed <= 3 * triangles);
         // Each triangle ends up in one of these, a clipped one in up to seven parts or in none.
-        let ends = culled + out_of_sight + rejected + drawn;
+        let ends = culled + out_of_sight + drawn;
         prop_assert!(ends >= triangles - clipped && ends <= triangles + 6 * clipped, "{:?}", stats);
         prop_assert!(drawn > 0 || !seen);
-        prop_assert!(rejected == 0, "{:?}", stats);
         let mut counts = counts.borrow_mut();
         counts[0] += u32::from(seen);
         counts[1] += meshes_out_of_sight;
@@ -343,7 +341,7 @@ fn a_vertex_is_transformed_about_as_often_as_neighbours_are_apart() {
         let mut stats = Stats::default();
         draw(&eye, &pose, &mesh, Cull::Back, &mut stats);
         let triangles = mesh.triangles().len();
-        assert_eq!((stats.triangles, stats.clipped, stats.rejected), (triangles as u32, 0, 0));
+        assert_eq!((stats.triangles, stats.clipped), (triangles as u32, 0));
         let per_vertex = f64::from(stats.transformed) / mesh.vertices().len() as f64;
         let per_triangle = f64::from(stats.transformed) / triangles as f64;
         println!("{name}: {per_vertex:.2} transforms a vertex, {per_triangle:.2} a triangle");

@@ -5,7 +5,7 @@
 //! - Assumes: nothing: any numbers are taken.
 
 use super::canvas::Canvas;
-use crate::geometry::{Clip, Coloring, ScreenVertex, Stats, ToClip};
+use crate::geometry::{Clip, Coloring, MOST_CORNERS, ScreenVertex, Stats, ToClip};
 use crate::math::{Pose, Vec3};
 use crate::num::{I12F4, U1F31};
 use crate::scene::{Camera, Mesh, Projection, Vertex};
@@ -23,7 +23,7 @@ pub struct Projected {
 
 impl Camera {
     /// Where a point of the world is on the screen; `None` if it is not between the planes or not
-    /// in the guard band of −1023 … 1022 px.
+    /// within ±1022¾ px, where clipping cuts.
     #[must_use]
     pub fn project(&self, point: Vec3) -> Option<Projected> {
         let at = project(self.projection(), self.placement(), point)?;
@@ -36,13 +36,15 @@ impl Camera {
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
     /// away are culled as the shader says.
     ///
-    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px; before rounding it is
-    /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
-    /// 10³ and at any distance from the world's origin.
+    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px. Before rounding it is off by at most 1/1024
+    /// px, and nearer than ¼ of a unit (of the mesh or of the world, whichever is longer) by ¼/w of that as much, but not by more than
+    /// 1/128 px, up to the near plane: for focal lengths of up to 1024 pixels and scales of up to 100, at any distance from the
+    /// world's origin. At the largest scale it may be 1/28 px there. So it is with the corners at which planes cut a triangle; and
+    /// none that is seen is left out, at any scale.
     ///
     /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
-    /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a
-    /// near plane at 2⁻¹⁶, targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
+    /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye,
+    /// targets of 0 × 0 or 1 × 1 pixels, viewports beyond the target, far planes before near ones. What is
     /// left out is what [`Stats`] counts.
     pub fn draw<'a, S, C>(&self, mesh: &Mesh<'a>, pose: &Pose, shader: &'a S, canvas: &mut C) -> C::Output
     where
@@ -70,8 +72,9 @@ impl Camera {
 /// A point of the world on the screen.
 pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
     let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
-    let mut at = ScreenVertex::default();
-    Clip::new(projection, to_clip.unit_bits())
-        .place(&to_clip, &Coloring::default(), &Vertex::default(), &mut at)
-        .then_some(at)
+    let mut at = [ScreenVertex::default(); MOST_CORNERS];
+    // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
+    let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
+    let count = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
+    at.first().filter(|_| count > 0).copied()
 }

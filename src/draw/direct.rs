@@ -30,8 +30,8 @@ use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::pixelcolor::Rgb565;
 use embedded_graphics::primitives::Rectangle;
 
-/// Columns and rows that a triangle within the guard band may cover.
-const REACH: Range<i32> = -1024..1023;
+/// Columns and rows that may be drawn: those whose centres lie inside the guard band, and inside [`Clip`]'s planes.
+const REACH: Range<i32> = -1023..1023;
 
 /// Draws triangles into a display. `RUN` pixels at a time are on the stack.
 pub(crate) struct Direct<'a, F: PixelFormat, T, const RUN: usize> {
@@ -350,6 +350,6 @@ impl Posed {
     #[inline(never)]
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> usize {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
-        self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to).unwrap_or(0)
+        self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to)
     }
 }

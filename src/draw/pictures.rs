@@ -51,7 +51,7 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// # Which pixels, and which colours
 ///
-/// Coverage is that of [`draw_triangle`](crate::draw_triangle). Columns and rows from −1024 to 1022 are drawn, as far as the
+/// Coverage is that of [`draw_triangle`](crate::draw_triangle). Columns and rows from −1023 to 1022 are drawn, as far as the
 /// target's bounding box has them, which need not begin at (0, 0): `clipped`, `cropped` and `translated` targets do.
 ///
 /// The colours are the same whatever part of the screen the target shows (if it begins left of column 0 there are columns
@@ -139,7 +139,7 @@ impl<'a> PerspectiveImage<'a> {
     /// A texture between four corners on the screen, counter-clockwise from the picture's top left; where they run clockwise
     /// its back is seen.
     ///
-    /// Of a corner x, y (pixels, −1024 … 1023) and q (near/w, so 1 for the nearest and ½ for what is twice as far away)
+    /// Of a corner x, y (pixels, within ±1023½) and q (near/w, so 1 for the nearest and ½ for what is twice as far away)
     /// are used. Four corners that do not lie in one plane make a fold along the diagonal from the first to the third.
     ///
     /// # Errors
@@ -162,7 +162,7 @@ impl<'a> PerspectiveImage<'a> {
     ///
     /// # Errors
     ///
-    /// [`CornersError`] if a corner lies outside the guard band of −1024 … 1023 px, or the quadrilateral has a corner
+    /// [`CornersError`] if a corner lies outside the guard band of ±1023½ px, or the quadrilateral has a corner
     /// of 180° or more, or a side of no length.
     pub fn between(texture: &Texture<'a>, corners: [[I12F4; 2]; 4]) -> Result<Self, CornersError> {
         let mut vertices = corners.map(|[x, y]| ScreenVertex { x, y, ..Default::default() });
@@ -310,7 +310,7 @@ impl<'a, S> ShadedTriangle<'a, S> {
     ///
     /// # Errors
     ///
-    /// [`RangeError`] if a vertex lies outside the guard band of −1024 … 1023 px or a texture coordinate beyond ±8192 texels.
+    /// [`RangeError`] if a vertex lies outside the guard band of ±1023½ px or a texture coordinate beyond ±8192 texels.
     pub fn new(vertices: &[ScreenVertex; 3], cull: Cull, shader: &'a S) -> Result<Self, RangeError> {
         if !vertices.iter().all(ScreenVertex::in_range) {
             return Err(RangeError);
@@ -357,7 +357,7 @@ pub enum CornersError {
 impl fmt::Display for CornersError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Range => write!(f, "a corner lies outside -1024 to 1023 px"),
+            Self::Range => write!(f, "a corner lies outside -1023.5 to 1023.5 px"),
             Self::NotConvex => write!(f, "the corners are not those of a convex quadrilateral"),
         }
     }

@@ -11,11 +11,12 @@ use crate::shade::{Patch, Quality, Run, Shader};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
-/// Only the rows of `band` are drawn, and only what `cull` does not leave out.
+/// Positions within ±1023½ px may be given: columns and rows −1023 … 1022 lie inside. Only the rows of `band` are drawn, and only
+/// what `cull` does not leave out.
 ///
 /// # Errors
 ///
-/// [`RangeError`] if a vertex lies outside the guard band or a texture coordinate beyond ±8192
+/// [`RangeError`] if a vertex lies outside the guard band of ±1023½ px or a texture coordinate beyond ±8192
 /// texels; nothing is drawn then.
 pub fn draw_triangle<F, D, S>(
     vertices: &[ScreenVertex; 3],

@@ -225,9 +225,7 @@ impl Assembler<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
-        let Some(count) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices) else {
-            return stats.count(|stats| &mut stats.rejected);
-        };
+        let count = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }

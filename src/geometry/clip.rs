@@ -1,10 +1,14 @@
-//! Stage 2: clip space to the screen.
+//! Clip: from clip space to the screen.
+//!
+//! - In: a vertex of a mesh, or of a polygon that was cut.
+//! - Out: a screen vertex; or no, if a plane cuts it off or it is so near that cutting has to place it.
+//! - Assumes: clip coordinates as [`transform`](super::transform) makes them.
 //!
 //! A triangle whose vertices all lie before the near plane and inside the guard band goes straight
 //! to the division by w. Any other is cut first, in clip space where all attributes are linear:
 //!
 //! ```text
-//!        guard band −1023 … 1022 px          near plane: w = near
+//!          guard band ±1022¾ px              near plane: w = near
 //!   ┌────────────────────────────────┐
 //!   │        ┌─────────┐             │       The new vertex on an edge is computed from the end
 //!   │        │ screen  │     ●───────┼──○    inside towards the end outside, in both triangles
@@ -13,22 +17,32 @@
 //! ```
 
 use super::coloring::Coloring;
-use super::screen::ScreenVertex;
-use super::transform::{ToClip, focal_log2};
+use super::screen::{GUARD, ScreenVertex};
+use super::transform::{FINE, ToClip, focal_log2, least_w};
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 
-/// Where clipping cuts: a pixel inside the guard band, so that rounding stays in it.
-pub(super) const CUT: RangeInclusive<i32> = -1023 * 16..=1022 * 16;
+/// Where clipping cuts, ±1022¾ px: beyond the centres of the first and the last column and row that may be drawn, −1022½ and
+/// 1022½, so that nothing is missing there, and ¾ px inside the guard band, so that rounding stays in it. A corner on this line is
+/// rounded by 1/32 px, and was off by 1/20 px at most before: [`cut`] has the sum. Less than ¼ px is what both sides need.
+const CUT: RangeInclusive<i32> = -CUT_AT..=CUT_AT;
+pub(super) const CUT_AT: i32 = 1022 * 16 + 12;
+
+const _: () = assert!(2 * (2 * GUARD as i64).pow(2) < 1 << 31);
+const _: () = assert!(CUT_AT > 1022 * 16 + 8 && CUT_AT < GUARD);
 
 /// Clips and projects.
 pub(crate) struct Clip {
-    /// The near plane in clip units, rounded up; at least 1.
-    pub(super) near: i32,
     /// The far plane in clip units, rounded down.
     pub(super) far: i32,
+    /// From which w on vertices are placed by 32 bits: beyond the near plane.
+    least: i32,
+    /// Whether that is further than the near plane, so that clipping has to take all bits that it has.
+    pub(super) is_fine: bool,
+    /// Both planes as the camera has them, for clipping.
+    pub(super) planes: [I16F16; 2],
     /// Perspective: near as a mantissa of 31 bits; orthographic: 1/(far − near) as such.
     depth_mantissa: i32,
     /// Perspective: the leading zeros of near in clip units; orthographic: those of far − near, less one.
@@ -39,7 +53,7 @@ pub(crate) struct Clip {
     /// nearest.
     pub(super) center: [i32; 2],
     /// The fraction bits of clip coordinates if w does not divide, else 0.
-    flat: i32,
+    pub(super) flat: i32,
 }
 
 /// How many bits screen positions have behind the 1/16 px before they are rounded.
@@ -47,7 +61,7 @@ pub(super) const FINER: u32 = 13;
 
 /// 1/w.
 #[derive(Clone, Copy)]
-pub(super) struct Inverse {
+struct Inverse {
     /// 1/w = mantissa · 2^(`zeros` − 62), 2³⁰ … 2³¹.
     mantissa: u32,
     zeros: i32,
@@ -85,15 +99,24 @@ impl Clip {
             let zeros = projection.near.to_bits().leading_zeros() as i32;
             (projection.near.to_bits() << (zeros - 1), zeros + 16 - unit_bits)
         };
+        let least = least_w(projection, unit_bits);
         Self {
-            near,
             far,
+            least: near.max(least),
+            is_fine: near < least,
+            planes: [projection.near, projection.far],
             depth_mantissa,
             depth_zeros,
             scale: focal_log2(projection.focal) + 4,
             center: projection.center.map(|at| (at << FINER) + (1 << (FINER - 1))),
             flat: if projection.orthographic { unit_bits } else { 0 },
         }
+    }
+
+    /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond
+    /// all that there is.
+    pub(super) fn distance_of(to_clip: &ToClip, plane: I16F16) -> i64 {
+        (i64::from(plane.to_bits()) << (to_clip.unit_bits() + FINE - 16)).min(1 << 46)
     }
 
     /// What x and y are divided by, in clip units.
@@ -107,8 +130,9 @@ impl Clip {
     pub(crate) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
         let (center, radius) = &to_clip.bounds(bounds);
         let (w, viewport) = (i64::from(center[2]), &projection.viewport);
+        let [near, far] = [projection.near, projection.far].map(|at| Self::distance_of(to_clip, at) >> FINE);
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
-        if self.near >= self.far || w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
+        if projection.near >= projection.far || w + *radius < near || w - radius > far {
             return false;
         }
         // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
@@ -131,7 +155,8 @@ impl Clip {
         })
     }
 
-    /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.
+    /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another: one that is cut
+    /// off, or so near that clipping places it.
     pub(crate) fn place(
         &self,
         to_clip: &ToClip,
@@ -162,70 +187,78 @@ impl Clip {
         place: (&mut I12F4, &mut I12F4, &mut U1F31),
     ) -> bool {
         let position = vertex.position.map(|at| i32::from(at.to_bits()));
-        self.project(|axis| to_clip.place(position, axis), &CUT, place)
+        let w = to_clip.place(position, 2);
+        let within = |at: i32| CUT.contains(&at).then_some(at);
+        w >= self.least
+            && w <= self.far
+            && self.project(
+                |axis| to_clip.place(position, axis),
+                w,
+                [0, self.scale],
+                &self.center,
+                within,
+                place,
+            )
     }
 
-    /// 1/w, or what is in its place without perspective.
-    #[inline(always)]
-    pub(super) fn inverse(&self, w: i32) -> Inverse {
-        if self.flat != 0 { Inverse { mantissa: 1 << 31, zeros: 31 - self.flat } } else { Inverse::of(w) }
-    }
-
-    /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
-    #[inline(always)]
-    pub(super) fn screen(&self, x: i32, axis: usize, w: Inverse) -> i32 {
-        // As far as w was shifted, so that the product has FINER bits more: what overflows is beyond ±2¹⁶/16 px.
-        let shift = w.zeros + self.scale - 17;
-        let x = if shift >= 0 {
-            let shifted = x << shift;
-            if shifted >> shift != x {
-                return if x < 0 { i32::MIN } else { i32::MAX };
-            }
-            shifted
-        } else {
-            x >> -shift
-        };
-        // Within ±2³⁰ each: the screen's middle is within ±2¹⁵/16 px.
-        (mul_high_short(x, w.mantissa) + self.center[axis]) >> FINER
-    }
-
-    /// Where a point of clip space is on the screen, and its q; false if it is not between the planes or its position
-    /// (1/16 px) not in `range`. Each coordinate is computed where it is used, and each result stored at once: there are
-    /// few registers.
+    /// Where a point of clip space between the planes is on the screen, and its q; false if `within` has no place for its position
+    /// (1/16 px) along an axis. Its x, y and w may have `finer` bits more than clip coordinates (w with perspective only), and x and y
+    /// another scale and another center. Each coordinate is
+    /// computed where it is used, and each result stored at once: there are few registers.
     #[inline(always)]
     pub(super) fn project(
         &self,
         at: impl Fn(usize) -> i32,
-        range: &RangeInclusive<i32>,
+        w: i32,
+        [finer, scale]: [i32; 2],
+        center: &[i32; 2],
+        within: impl Fn(i32) -> Option<i32>,
         (to_x, to_y, to_q): (&mut I12F4, &mut I12F4, &mut U1F31),
     ) -> bool {
-        let w = at(2);
-        if w < self.near || w > self.far {
-            return false;
-        }
-        let inverse = self.inverse(w);
+        let inverse;
         let q = if self.flat != 0 {
+            inverse = Inverse { mantissa: 1 << 31, zeros: 31 - self.flat - finer };
             // Both of 31 bits.
             let depth = (self.far - w) << self.depth_zeros;
             (mul_round::<30>(depth, self.depth_mantissa) as u32).clamp(1, i32::MAX as u32)
         } else {
+            inverse = Inverse::of(w);
             // 2³⁰ … 2³², of which the upper bits are q: all but as many as w has more than near.
             let quotient = (mul_high_short(self.depth_mantissa, inverse.mantissa) as u32) << 2;
-            match (self.depth_zeros - inverse.zeros) as u32 {
+            match (self.depth_zeros - finer - inverse.zeros) as u32 {
                 0 => quotient.min(i32::MAX as u32),
                 shift => ((quotient >> (shift - 1).min(30)) + 1) >> 1,
             }
         };
         *to_q = U1F31::from_bits(q);
-        let x = self.screen(at(0), 0, inverse);
-        if !range.contains(&x) {
+        let Some(x) = within(screen(at(0), scale, center[0], inverse)) else {
             return false;
-        }
+        };
         *to_x = I12F4::from_bits(x as i16);
-        let y = self.screen(at(1), 1, inverse);
+        let Some(y) = within(screen(at(1), scale, center[1], inverse)) else {
+            return false;
+        };
         *to_y = I12F4::from_bits(y as i16);
-        range.contains(&y)
+        true
     }
+}
+
+/// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
+#[inline(always)]
+fn screen(x: i32, scale: i32, center: i32, w: Inverse) -> i32 {
+    // As far as w was shifted, so that the product has FINER bits more: what overflows is beyond ±2¹⁶/16 px.
+    let shift = w.zeros + scale - 17;
+    let x = if shift >= 0 {
+        let shifted = x << shift;
+        if shifted >> shift != x {
+            return if x < 0 { i32::MIN } else { i32::MAX };
+        }
+        shifted
+    } else {
+        x >> -shift
+    };
+    // Within ±2³⁰ each: the screen's middle is within ±2¹⁵/16 px.
+    (mul_high_short(x, w.mantissa) + center) >> FINER
 }
 
 /// Just more than √(a² + b²). The library's root divides.

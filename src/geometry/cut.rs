@@ -1,60 +1,85 @@
-//! Stage 2 for triangles that lie across a plane: they are cut in clip space.
+//! Cut: triangles that cross a plane of clipping, or come very near the eye.
+//!
+//! - In: the corners of a triangle in the mesh.
+//! - Out: what is left of it, as a polygon of screen vertices, a fan around the first.
+//! - Assumes: at least one corner lies outside, or too near for 32 bits.
 //!
 //! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge.
+//!
+//! # How exact corners are
+//!
+//! Coordinates have 46 bits here ([`FINE`] more than elsewhere), of which [`ToClip::place_fine`] gets less than 9 units wrong, and
+//! a cut 3 more. So before it is rounded to 1/16 px a corner is off by at most 12·(2^k + c)/w px, w being in these units, 2^k at
+//! least the focal length, and c its distance from the line of sight in pixels.
+//!
+//! A mesh that reaches the eye has a unit of 2⁻²⁸ or less: its scale is below 2¹⁰, so its matrix is, and its translation is
+//! not longer than it reaches, 2¹⁴ (of a rotation; a matrix with elements up to 2 may make all of this four times as coarse). And w is
+//! at least near, 1/256: 2²⁰ units. For a focal length of 512 px, seen from the middle of the screen, that makes 1/57 px at the largest
+//! scale and 1/57 000 at a scale of 1; for the longest, at the guard band, 2 046 px beside a line of sight that leads past it, 1/7 px.
+//! Rounding adds 1/32. So whatever is cut stays inside the guard band, from which the planes keep ¾ px, and nothing has to be left
+//! out for want of bits; and at the last columns and rows, ¼ px inside the planes, nothing is missing.
 
-use super::clip::{CUT, Clip, FINER};
+use super::clip::{CUT_AT, Clip, FINER};
 use super::coloring::Coloring;
 use super::fan::center;
-use super::screen::{GUARD_BAND, ScreenVertex};
-use super::transform::{ClipVertex, ToClip};
+use super::screen::{GUARD, ScreenVertex};
+use super::transform::{FINE, ToClip};
 use crate::math::recip::Reciprocal;
-use crate::num::{I12F4, I16F16, U1F31, U8F8, wide};
+use crate::num::{I12F4, I16F16, U8F8, mul_long, wide};
 use crate::scene::Vertex;
 use core::mem;
 
 /// The most corners that a clipped triangle has: three, and one more for each plane.
 pub(crate) const MOST_CORNERS: usize = 9;
 
-/// A polygon in clip space, in the memory of the screen vertices that become of it: they have room for all but w.
+/// x of a corner that is still to be put on the screen.
+const NOT_PLACED: I12F4 = I12F4::MIN;
+
+/// How many bits x and y lose in sixteenths of a pixel.
+const COARSER: i32 = 15;
+
+/// A polygon in clip space, and the screen vertices that become of it.
 struct Polygon<'a> {
-    /// Position and q hold x and y of clip space.
+    /// Their positions are those of the mesh's vertices that need no clipping, or [`NOT_PLACED`].
     vertices: &'a mut [ScreenVertex; MOST_CORNERS],
-    w: [i32; MOST_CORNERS],
+    /// x and y, which divided by w are 2^−[`COARSER`] px/16 from the screen's corner; w in clip units, with [`FINE`] bits more.
+    at: [At; MOST_CORNERS],
     count: usize,
+    /// The near plane and the far one, as w.
+    planes: [i64; 2],
 }
 
-impl<'a> Polygon<'a> {
-    #[inline(never)]
-    fn new(
-        to_clip: &ToClip,
-        coloring: &Coloring,
-        corners: [&Vertex; 3],
-        vertices: &'a mut [ScreenVertex; MOST_CORNERS],
-    ) -> Self {
-        let mut polygon = Self { vertices, w: [0; MOST_CORNERS], count: 0 };
-        for vertex in corners {
-            polygon.push(&in_clip_space(to_clip, coloring, vertex));
-        }
-        polygon
+/// Three coordinates of 48 bits, each in an upper part and a lower one.
+#[derive(Clone, Copy)]
+struct At {
+    lower: [u32; 3],
+    upper: [i16; 4],
+}
+
+impl At {
+    const ZERO: Self = Self { lower: [0; 3], upper: [0; 4] };
+}
+
+impl Polygon<'_> {
+    #[inline(always)]
+    fn at(&self, i: usize, axis: usize) -> i64 {
+        i64::from(self.at[i].upper[axis]) << 32 | i64::from(self.at[i].lower[axis])
     }
 
     #[inline(always)]
-    fn at(&self, i: usize) -> [i32; 3] {
-        let vertex = &self.vertices[i];
-        let x = i32::from(vertex.y.to_bits()) << 16 | i32::from(vertex.x.to_bits() as u16);
-        [x, vertex.q.to_bits() as i32, self.w[i]]
+    fn set(&mut self, i: usize, axis: usize, at: i64) {
+        (self.at[i].upper[axis], self.at[i].lower[axis]) = ((at >> 32) as i16, at as u32);
     }
 
-    /// Each plane adds at most one vertex to a convex polygon: there is room.
     #[inline(never)]
-    fn push(&mut self, vertex: &ClipVertex) {
-        let ClipVertex { at: [x, y, w], u, v, color } = *vertex;
-        if let (Some(to), Some(to_w)) = (self.vertices.get_mut(self.count), self.w.get_mut(self.count)) {
-            let [low, high] = [x as i16, (x >> 16) as i16].map(I12F4::from_bits);
-            *to = ScreenVertex { x: low, y: high, q: U1F31::from_bits(y as u32), u, v, color };
-            *to_w = w;
-            self.count += 1;
-        }
+    fn mix(&mut self, axis: usize, [a, b, to]: [usize; 3], t: &Ratio) {
+        self.set(to, axis, t.between(self.at(a, axis), self.at(b, axis)));
+    }
+
+    /// Without its last 0 … 31 bits, where the rest fits 32.
+    #[inline(never)]
+    fn short(&self, i: usize, axis: usize, dropped: i32) -> i32 {
+        i32::from(self.at[i].upper[axis]) << (31 - dropped) << 1 | (self.at[i].lower[axis] >> dropped) as i32
     }
 
     /// Moves the vertices before `first` to the end, by three reversals: the library's way takes 2 KiB of flash, and more stack.
@@ -72,31 +97,26 @@ impl<'a> Polygon<'a> {
     fn reverse(&mut self, mut first: usize, mut end: usize) {
         while first + 1 < end {
             end -= 1;
-            if let Some((before, [last, ..])) = self.vertices.split_at_mut_checked(end)
-                && let Some(first) = before.get_mut(first)
-            {
-                mem::swap(first, last);
-            }
-            self.w.swap(first, end);
+            swap(self.vertices, first, end);
+            swap(&mut self.at, first, end);
             first += 1;
         }
     }
 }
 
-/// A plane that clipping cuts along.
-#[derive(Clone, Copy)]
-struct Plane {
-    /// Of the clip coordinates.
-    axis: usize,
-    /// Across and down: where on the screen, in 1/16 px; along: the distance.
-    limit: i32,
-    /// Whether the inside is above.
-    lower: bool,
+/// The library's moves what it swaps three times, by a routine of 1300 bytes.
+#[inline(always)]
+fn swap<T>(all: &mut [T], first: usize, last: usize) {
+    if let Some((before, [last, ..])) = all.split_at_mut_checked(last)
+        && let Some(first) = before.get_mut(first)
+    {
+        mem::swap(first, last);
+    }
 }
 
 impl Clip {
-    /// Cuts a triangle that is not inside all planes and puts what is left of it on the screen, as a fan
-    /// around its first vertex; `None` if that does not fit the guard band (which only the coarsest of numbers do not).
+    /// Cuts a triangle that is not inside all planes, or has a corner too near for 32 bits, and puts what is left of it on the
+    /// screen, as a fan around its first vertex. Returns how many corners that has.
     #[cold]
     #[inline(never)]
     pub(crate) fn cut(
@@ -105,70 +125,146 @@ impl Clip {
         coloring: &Coloring,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
-    ) -> Option<usize> {
-        let mut polygon = Polygon::new(to_clip, coloring, corners, to);
+    ) -> usize {
+        let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
+        let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
+        for (i, vertex) in corners.into_iter().enumerate() {
+            self.start(to_clip, coloring, vertex, &mut polygon, i);
+        }
+        // Where no vertex is outside a side no corner will be.
+        let outside = (0..3).fold(0, |all, i| all | Self::outside(&polygon, i));
+        for side in 0..6 {
+            if outside >> side & 1 != 0 {
+                self.cut_by(&mut polygon, side);
+            }
+        }
+        let count = polygon.count;
+        for i in 0..count {
+            self.put_on_screen(&mut polygon, i);
+        }
+        polygon.rotate(center(polygon.vertices.get(..count).unwrap_or_default()));
+        count
+    }
+
+    /// Where a vertex is before anything is cut.
+    #[inline(never)]
+    fn start(
+        &self,
+        to_clip: &ToClip,
+        coloring: &Coloring,
+        vertex: &Vertex,
+        polygon: &mut Polygon<'_>,
+        i: usize,
+    ) {
+        let coarse = if self.is_fine { [0; 3] } else { to_clip.place_all(vertex.position) };
         for axis in [2, 0, 1] {
-            let range = if axis == 2 { [self.near, self.far] } else { [*CUT.start(), *CUT.end()] };
-            let [below, mut above] = self.outside(&polygon, axis, range);
-            if below != 0 {
-                self.cut_by(&mut polygon, &Plane { axis, limit: range[0], lower: true }, below);
-                [_, above] = self.outside(&polygon, axis, range);
-            }
-            if above != 0 {
-                self.cut_by(&mut polygon, &Plane { axis, limit: range[1], lower: false }, above);
-            }
+            let at = if self.is_fine {
+                to_clip.place_fine(vertex.position, axis)
+            } else {
+                i64::from(coarse[axis]) << FINE
+            };
+            self.start_along(at, polygon, i, axis);
         }
+        self.look(polygon, i);
+        let to = &mut polygon.vertices[i];
+        to.set_attributes(vertex, coloring);
+        let outside = to.y;
+        if !self.place_bare(to_clip, vertex, to) {
+            (to.x, to.y) = (NOT_PLACED, outside);
+        }
+    }
+
+    #[inline(never)]
+    fn start_along(&self, mut at: i64, polygon: &mut Polygon<'_>, i: usize, axis: usize) {
+        if let Some(center) = self.center.get(axis) {
+            let center = mul_long(self.divisor_of(polygon, i), (center >> FINER) << COARSER);
+            at = ((at << 2) >> (2 + COARSER - self.scale)) + center;
+        }
+        polygon.set(i, axis, at);
+    }
+
+    /// Rounds a corner to the screen, if it has no position yet. One that numbers too coarse move out of the guard band is put on
+    /// its border; of a rotation there is none.
+    #[inline(never)]
+    fn put_on_screen(&self, polygon: &mut Polygon<'_>, i: usize) {
+        if polygon.vertices[i].x != NOT_PLACED {
+            return;
+        }
+        // As many bits as fit 31: without perspective of x and y, of which w is no part.
+        let is_flat = self.flat != 0;
+        let [x, y, w, _] = polygon.at[i].upper.map(i32::from);
+        let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
+        let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
+        let [x, y] = [0, 1].map(|axis| polygon.short(i, axis, dropped));
+        // Up, so that it is not before the near plane.
+        let w = polygon.short(i, 2, if is_flat { FINE } else { dropped }) + 1;
+        let w = if is_flat { w.min(self.far) } else { w };
+        let to = &mut polygon.vertices[i];
+        let on_border = |at: i32| Some(at.clamp(-GUARD, GUARD));
+        let place = (&mut to.x, &mut to.y, &mut to.q);
+        let at = |axis| if axis == 0 { x } else { y };
+        self.project(at, w, [FINE - dropped, COARSER], &[1 << (FINER - 1); 2], on_border, place);
+    }
+
+    /// What x and y are divided by.
+    #[inline(always)]
+    fn divisor_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
+        if self.flat != 0 { 1 << (self.flat + FINE) } else { polygon.at(i, 2) }
+    }
+
+    /// How far inside a side a corner lies, linear in clip space: of near, far, left, right, top and bottom. Within ±2⁴⁷.
+    #[inline(never)]
+    fn distance(&self, polygon: &Polygon<'_>, i: usize, side: usize) -> i64 {
+        let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
+        let at = if side % 2 == 0 { at } else { -at };
+        match side {
+            0 => at - polygon.planes[0],
+            1 => at + polygon.planes[1],
+            _ => self.border_of(polygon, i) + at,
+        }
+    }
+
+    /// How far from the screen's corner the guard band is cut at a corner.
+    #[inline(always)]
+    fn border_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
+        // ±1022¾ px are 1 − 2⁻¹⁰ − 2⁻¹² of 2^COARSER sixteenths, twice.
+        const { assert!(CUT_AT << 2 == (1 << (COARSER + 1)) - (5 << (COARSER - 11))) };
+        let divisor = self.divisor_of(polygon, i);
+        (divisor - (divisor >> 10) - (divisor >> 12)) >> 1
+    }
+
+    /// Writes down in the place of y outside which sides a corner lies (bits).
+    #[inline(never)]
+    fn look(&self, polygon: &mut Polygon<'_>, i: usize) {
+        let [x, y, w] = [0, 1, 2].map(|axis| polygon.at(i, axis));
+        let border = self.border_of(polygon, i);
+        let [near, far] = polygon.planes;
+        let mut outside = i16::from(w < near) | i16::from(w > far) << 1;
+        for (at, bit) in [(x, 2), (y, 4)] {
+            // Both, perhaps, behind the eye.
+            outside |= (i16::from(-at > border) | i16::from(at > border) << 1) << bit;
+        }
+        polygon.vertices[i].y = I12F4::from_bits(outside);
+    }
+
+    /// Outside which sides a corner lies (bits): of none if it needs no clipping.
+    #[inline(never)]
+    fn outside(polygon: &Polygon<'_>, i: usize) -> u32 {
+        let vertex = &polygon.vertices[i];
+        if vertex.x == NOT_PLACED { vertex.y.to_bits() as u32 } else { 0 }
+    }
+
+    /// Cuts a convex polygon by one plane (Sutherland–Hodgman, in place).
+    #[inline(never)]
+    fn cut_by(&self, polygon: &mut Polygon<'_>, side: usize) {
         let count = polygon.count;
-        if !(0..count).all(|i| self.put_on_screen(&mut polygon, i)) {
-            return None;
+        let mut outside = 0_u32;
+        for i in 0..count {
+            outside |= (Self::outside(polygon, i) >> side & 1) << i;
         }
-        polygon.rotate(center(polygon.vertices.get(..count)?));
-        Some(count)
-    }
-
-    #[inline(never)]
-    fn put_on_screen(&self, polygon: &mut Polygon<'_>, i: usize) -> bool {
-        let (at, to) = (polygon.at(i), &mut polygon.vertices[i]);
-        self.project(|axis| at[axis], &GUARD_BAND, (&mut to.x, &mut to.y, &mut to.q))
-    }
-
-    /// Where a vertex is along an axis of the screen, in 1/16 px, or (axis 2) its w.
-    #[inline(never)]
-    fn along(&self, polygon: &Polygon<'_>, i: usize, axis: usize) -> i32 {
-        let at = polygon.at(i);
-        if axis == 2 { at[2] } else { self.screen(at[axis], axis, self.inverse(at[2].max(1))) }
-    }
-
-    /// Which vertices (bits) lie below and above a range of clip space (axis 2) or of the screen.
-    #[inline(never)]
-    fn outside(&self, polygon: &Polygon<'_>, axis: usize, [start, end]: [i32; 2]) -> [u32; 2] {
-        let mut outside = [0; 2];
-        for i in 0..polygon.count {
-            let at = self.along(polygon, i, axis);
-            outside[0] |= u32::from(at < start) << i;
-            outside[1] |= u32::from(at > end) << i;
+        if outside == 0 {
+            return;
         }
-        outside
-    }
-
-    /// Linear in clip space, and positive inside.
-    #[inline(never)]
-    fn distance(&self, at: &[i32; 3], plane: &Plane) -> i64 {
-        let [.., w] = *at;
-        let distance = match plane.axis {
-            2 => i64::from(w) - i64::from(plane.limit),
-            axis => {
-                let slope = plane.limit - (self.center[axis] >> FINER);
-                (i64::from(at[axis]) << self.scale) - wide(self.divisor(w), slope)
-            }
-        };
-        if plane.lower { distance } else { -distance }
-    }
-
-    /// Cuts a convex polygon by one plane, outside which some vertices (bits) lie (Sutherland–Hodgman, in place).
-    #[inline(never)]
-    fn cut_by(&self, polygon: &mut Polygon<'_>, plane: &Plane, outside: u32) {
-        let count = polygon.count;
         if outside == (1 << count) - 1 {
             polygon.count = 0;
             return;
@@ -178,59 +274,80 @@ impl Clip {
         let first_out = outside.trailing_zeros();
         let first = first_out + (outside >> first_out).trailing_ones();
         polygon.rotate(if first < count as u32 { first as usize } else { first as usize - count });
-        // Inside: 0 … stay; outside: stay … count.
+        // Inside: 0 … stay; outside: stay … count. Each plane adds at most one vertex to a convex polygon: there is room.
         let stay = (outside >> first).trailing_zeros() as usize;
-        let leave = self.cross(polygon, stay - 1, stay, plane);
-        let enter = self.cross(polygon, 0, count - 1, plane);
-        polygon.count = stay;
-        polygon.push(&leave);
-        polygon.push(&enter);
+        self.cross(polygon, [0, count - 1, stay + 1], side);
+        self.cross(polygon, [stay - 1, stay, stay], side);
+        polygon.count = stay + 2;
     }
 
-    /// Where an edge crosses a plane, computed from its end `inside`.
+    /// Where an edge crosses a plane, computed from its end `inside`, as a corner in the place `to`, which may be that of the end
+    /// `outside`.
     #[inline(never)]
-    fn cross(&self, polygon: &Polygon<'_>, inside: usize, outside: usize, plane: &Plane) -> ClipVertex {
-        let (from, to) = (polygon.at(inside), polygon.at(outside));
-        let t = ratio(self.distance(&from, plane).max(0), -self.distance(&to, plane).min(0));
-        let at = core::array::from_fn(|axis| mix(from[axis], to[axis], t));
-        let (from, to) = (&polygon.vertices[inside], &polygon.vertices[outside]);
-        ClipVertex {
-            at,
-            u: I16F16::from_bits(mix(from.u.to_bits(), to.u.to_bits(), t)),
-            v: I16F16::from_bits(mix(from.v.to_bits(), to.v.to_bits(), t)),
-            color: core::array::from_fn(|i| {
-                U8F8::from_bits(mix(from.color[i].to_bits().into(), to.color[i].to_bits().into(), t) as u16)
-            }),
+    fn cross(&self, polygon: &mut Polygon<'_>, [inside, outside, to]: [usize; 3], side: usize) {
+        let before = self.distance(polygon, inside, side).max(0);
+        let t = Ratio::new(before, -self.distance(polygon, outside, side), self.is_fine);
+        for axis in 0..2 {
+            polygon.mix(axis, [inside, outside, to], &t);
+        }
+        match polygon.planes.get(side) {
+            Some(&w) => polygon.set(to, 2, w),
+            None => polygon.mix(2, [inside, outside, to], &t),
+        }
+        self.look(polygon, to);
+        let vertices = &mut *polygon.vertices;
+        vertices[to].x = NOT_PLACED;
+        vertices[to].u =
+            I16F16::from_bits(mix(vertices[inside].u.to_bits(), vertices[outside].u.to_bits(), t.upper));
+        vertices[to].v =
+            I16F16::from_bits(mix(vertices[inside].v.to_bits(), vertices[outside].v.to_bits(), t.upper));
+        for i in 0..3 {
+            let [a, b] = [inside, outside].map(|vertex| i32::from(vertices[vertex].color[i].to_bits()));
+            // As the rest would say, for the most part.
+            vertices[to].color[i] = U8F8::from_bits(if a == b { a } else { mix(a, b, t.upper) } as u16);
         }
     }
 }
 
-#[inline(never)]
-fn in_clip_space(to_clip: &ToClip, coloring: &Coloring, vertex: &Vertex) -> ClipVertex {
-    let mut color = [U8F8::ZERO; 3];
-    coloring.of_vertex(vertex, &mut color);
-    let [u, v] = vertex.uv.map(I16F16::from);
-    ClipVertex { at: to_clip.place_all(vertex.position), u, v, color }
+/// A number of 0 … 1.
+struct Ratio {
+    /// In units of 2⁻³⁰.
+    upper: i32,
+    /// What is left, in units of 2⁻⁵⁴.
+    lower: i32,
 }
 
-/// before / (before + behind) in 30 bits.
-#[inline(always)]
-fn ratio(before: i64, behind: i64) -> i32 {
-    let whole = before + behind;
-    if whole == 0 {
-        return 0;
+impl Ratio {
+    /// before / (before + behind), both 0 … 2⁴⁷: a quotient of 30 bits and, if it is to be fine, another of what that leaves, so
+    /// that it is within 2⁻⁴⁴.
+    #[inline(never)]
+    fn new(before: i64, behind: i64, is_fine: bool) -> Self {
+        let whole = before + behind;
+        if whole == 0 {
+            return Self { upper: 0, lower: 0 };
+        }
+        let shift = whole.leading_zeros() - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
+        let (before, whole) = (before << shift, whole << shift);
+        // 1/whole = mantissa · 2⁻⁷⁸.
+        let mantissa = Reciprocal::precise((whole >> 17) as u32).mantissa;
+        let upper = (mul_long(before, mantissa) >> 18).min(1 << 30) as i32;
+        let rest = if is_fine { (before - mul_long(whole, upper)) as i32 } else { 0 };
+        Self { upper, lower: (wide(rest, mantissa) >> 24) as i32 }
     }
-    let shift = whole.leading_zeros() as i32 - 33; // whole becomes 2³⁰ … 2³¹ − 1
-    let normal = |value: i64| (if shift >= 0 { value << shift } else { value >> -shift }) as i32;
-    let reciprocal = Reciprocal::precise(normal(whole) as u32);
-    ((wide(normal(before), reciprocal.mantissa) >> 31) as i32).min(1 << 30)
+
+    /// From `a` to `b`, which differ by less than 2⁴⁷, rounded down.
+    #[inline(always)]
+    fn between(&self, a: i64, b: i64) -> i64 {
+        let mut share = mul_long(b - a, self.upper);
+        if self.lower != 0 {
+            share += mul_long((b - a) >> 24, self.lower);
+        }
+        a + share
+    }
 }
 
 /// Weights 2³⁰ − t and t: no difference is taken that could overflow.
 #[inline(never)]
 fn mix(a: i32, b: i32, t: i32) -> i32 {
-    if a == b {
-        return a; // As the rest would say: colours, for the most part.
-    }
     ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32
 }

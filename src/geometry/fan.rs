@@ -1,4 +1,8 @@
-//! Stage 2, after clipping: a polygon on the screen as a fan of triangles around its first vertex.
+//! Fan: a polygon on the screen as triangles around one of its vertices.
+//!
+//! - In: a polygon that clipping left, its corners rounded to 1/16 px.
+//! - Out: the vertex around which no triangle is turned over.
+//! - Assumes: the polygon was convex before rounding.
 //!
 //! In clip space the polygon is convex. On the screen its corners are rounded to 1/16 px, and where two of them lie close
 //! together that may turn one of the fan's triangles over:

@@ -20,9 +20,9 @@ use core::ops::RangeInclusive;
 /// perspective.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex {
-    /// Pixels from the left edge, −1024 … 1023; pixel centres are at +½.
+    /// Pixels from the left edge, −1023½ … 1023½; pixel centres are at +½.
     pub x: I12F4,
-    /// Pixels from the top edge, down, −1024 … 1023.
+    /// Pixels from the top edge, down, −1023½ … 1023½.
     pub y: I12F4,
     /// near/w: 1 at the near plane, less beyond it, so greater is nearer. 0 counts as 2⁻³¹, 1 and more as 1 − 2⁻³¹.
     pub q: U1F31,
@@ -36,9 +36,11 @@ pub struct ScreenVertex {
 
 const _: () = assert!(size_of::<ScreenVertex>() == 24);
 
-/// The guard band of [`ScreenVertex`] positions, in 1/16 px: −1024 … 1023 px, that is, 2047 px wide and high. That is the
-/// most with which every edge function fits an `i32`: see set-up.
-pub(super) const GUARD_BAND: RangeInclusive<i32> = -1024 * 16..=1023 * 16;
+/// The guard band of [`ScreenVertex`] positions, ±1023½ px, in 1/16 px: its width and height of 2047 px are the most with which
+/// every edge function fits an `i32`. (No difference of two positions exceeds 32 752, so |a·b − c·d| ≤ 2·32752² = 2 145 387 008
+/// < 2³¹.)
+pub(super) const GUARD_BAND: RangeInclusive<i32> = -GUARD..=GUARD;
+pub(super) const GUARD: i32 = 1023 * 16 + 8;
 
 /// The largest texture coordinate, I16F16.
 const MAX_TEXELS: i32 = 8192 << 16;
@@ -81,7 +83,7 @@ pub enum Inputs {
     UvColor,
 }
 
-/// A vertex lies outside the guard band, or its texture coordinates are out of range.
+/// A vertex lies outside the guard band of ±1023½ px, or its texture coordinates are out of range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RangeError;
 
@@ -89,7 +91,7 @@ impl fmt::Display for RangeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "a screen vertex lies outside -1024 to 1023 px or its texture coordinates outside ±8192 texels"
+            "a screen vertex lies outside -1023.5 to 1023.5 px or its texture coordinates outside ±8192 texels"
         )
     }
 }

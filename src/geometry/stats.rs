@@ -12,15 +12,12 @@ pub struct Stats {
     pub triangles: u32,
     /// How often a vertex was transformed; less than three times a triangle by what the vertex cache saved.
     pub transformed: u32,
-    /// Triangles that were cut at a plane or at the guard band.
+    /// Triangles that were cut at a plane or at the guard band, or lie so near the eye that they were treated as such.
     pub clipped: u32,
     /// Triangles, or pieces of clipped ones, left out because they had no area or faced the wrong way.
     pub culled: u32,
     /// Triangles or pieces without a row in the viewport, or in the band.
     pub out_of_sight: u32,
-    /// Triangles left out because their numbers were too coarse for the guard band: so close to an eye with a near
-    /// plane of almost 0 that rounding moves them by hundreds of pixels.
-    pub rejected: u32,
     /// Triangles or pieces drawn.
     pub drawn: u32,
 }

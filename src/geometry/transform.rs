@@ -1,26 +1,20 @@
-//! Stage 1: mesh space to clip space.
+//! Transform: from mesh space to clip space.
+//!
+//! - In: the pose of a mesh, the pose and projection of the camera; then positions.
+//! - Out: clip coordinates: right, down and before the eye, in units that suit this mesh.
+//! - Assumes: nothing; a matrix of any numbers fits its unit.
 //!
 //! One matrix a mesh does it all: the pose, the inverse of the camera's, the focal length.
 //! Its elements share one exponent (block floating point), and so do all clip coordinates of the
 //! mesh: a small object has the fine unit that its nearness needs, a wide one the coarse
 //! unit that its size needs. The unit cancels in x/w, and nothing can overflow.
+//!
+//! A mesh may reach 16 000 units far and still be cut at a near plane 1/256 of a unit before the eye: no 32 bits hold both. What
+//! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
 use crate::math::Pose;
-use crate::num::{I4F12, I16F16, U8F8, mul_round, shift_round};
-use crate::scene::{Bounds, Projection};
-
-/// A vertex in clip space: what stands before the division by w.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ClipVertex {
-    /// Right and down, times focal length / 2^[`focal_log2`](focal_log2), and the distance before the eye, in units of
-    /// 2^−`unit_bits`.
-    pub(crate) at: [i32; 3],
-    pub(crate) u: I16F16,
-    pub(crate) v: I16F16,
-    pub(crate) color: [U8F8; 3],
-}
-
-const _: () = assert!(size_of::<ClipVertex>() == 28);
+use crate::num::{I4F12, I16F16, mul_long, mul_round, shift_round};
+use crate::scene::{Bounds, Projection, Viewport};
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
 pub(crate) const fn focal_log2(focal: I16F16) -> i32 {
@@ -33,10 +27,16 @@ const FINEST: i32 = 34;
 /// The most without perspective, where 2^this is a number in clip space.
 const FINEST_FLAT: i32 = 28;
 
+/// How many bits more there are in clipping: of clip coordinates 46 in all, in an `i64`.
+pub(super) const FINE: i32 = 14;
+
 /// From mesh space to clip space.
 pub(crate) struct ToClip {
     /// For x, y and w.
     rows: [Row; 3],
+    /// What rounding took from the elements and the translation of each row, in units of 2^−[`FINE`] of theirs, within ±2¹⁴; 0
+    /// where clipping needs no more bits.
+    rests: [[i16; 4]; 3],
     unit_bits: i32,
     /// The pose's, U10F22.
     scale: u32,
@@ -71,6 +71,74 @@ impl Row {
             rest += at * i32::from(halves as i16);
         }
         whole + (rest >> 15)
+    }
+
+    /// The same with [`FINE`] bits more.
+    #[inline(never)]
+    fn place_fine(&self, position: [i32; 3], rests: &[i16; 4]) -> i64 {
+        let (mut whole, mut rest, mut finer) = (self.translation, 0, 0);
+        for ((at, halves), more) in position.into_iter().zip(self.elements).zip(rests) {
+            whole += at * (halves >> 16);
+            rest += at * i32::from(halves as i16);
+            finer += at * i32::from(*more);
+        }
+        let rest = ((i64::from(rest) << FINE) + i64::from(finer)) >> 15;
+        (i64::from(whole) << FINE) + i64::from(rests[3]) + rest
+    }
+}
+
+/// Sets what rounding took from the elements and the translation of a row: of elements with 50 fraction bits, a translation with 30,
+/// and the focal length's mantissa, or 0 where it is no part of the row.
+///
+/// An element was rounded three times, to ½ + ½ of its 30 bits and to ½ of what is left of these, at most a quarter: what that
+/// leaves is within ¾ of 2^[`FINE`], and three of it times 2¹⁵ steps are below 2³¹.
+#[cold]
+#[inline(never)]
+fn set_rests(
+    rests: &mut [i16; 4],
+    row: &Row,
+    matrix: &[i64; 3],
+    translation: i64,
+    focal: i32,
+    unit_bits: i32,
+) {
+    // Elements are steps of 2⁻¹² with 15 fraction bits.
+    for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(matrix) {
+        *to = rest(*value, 33 - unit_bits, focal, ((halves >> 16) << 15) + i32::from(halves as i16));
+    }
+    rests[3] = rest(translation, 16 - unit_bits, focal, row.translation);
+}
+
+#[inline(never)]
+fn rest(value: i64, shift: i32, focal: i32, rounded: i32) -> i16 {
+    // Below 2⁴⁵.
+    let value = if shift < 0 { value << -shift } else { value >> shift };
+    let value = if focal != 0 { mul_long(value, focal) >> 1 } else { value };
+    (value - (i64::from(rounded) << FINE)) as i16
+}
+
+/// From which distance w on, in clip units, 32 bits place a vertex well enough: `i32::MAX` if they never do.
+///
+/// A clip coordinate is off by less than 3 units: 1.5 by elements (each rounded to 2⁻¹⁶ of a unit, and times up to 2¹⁵ steps),
+/// ½ by the translation, 1 by what is cut off the sum. On the screen, c px from the line of sight, that is at most
+/// 3·(2^k + c)/w px for a focal length of up to 2^k: within 1/128 px where w ≥ 384·(2^k + c), c being that of the viewport's sides.
+/// (What lies farther out is off by more, and as much less its edges are where they come into view.) Without perspective 1 takes
+/// the place of w, and nothing is added for c.
+pub(super) fn least_w(projection: &Projection, unit_bits: i32) -> i32 {
+    let focal_log2 = focal_log2(projection.focal);
+    if !projection.orthographic {
+        let Viewport { left, top, width, height } = projection.viewport;
+        let [x, y] = projection.center;
+        let reach = |center: i32, start: i16, length: i16| {
+            let half = i32::from(length) * 8;
+            (center - i32::from(start) * 16 - half).abs() + half
+        };
+        let reach = reach(x, left, width).max(reach(y, top, height)) >> 4;
+        ((1 << focal_log2.max(0)) + reach) * 384
+    } else if unit_bits < focal_log2 + 9 {
+        i32::MAX
+    } else {
+        0
     }
 }
 
@@ -126,7 +194,18 @@ impl ToClip {
             });
             Row::new(elements, times_focal(to_i32(translation[row], 30 - unit_bits)))
         });
-        Self { rows, unit_bits, scale: pose.scale.to_bits() }
+        let least = least_w(projection, unit_bits);
+        // The near plane may be nearer than that, in 1/65536.
+        let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
+        let is_fine = least == i32::MAX || is_near;
+        let mut rests = [[0; 4]; 3];
+        if is_fine {
+            for row in 0..3 {
+                let focal = if row < 2 { focal } else { 0 };
+                set_rests(&mut rests[row], &rows[row], &matrix[row], translation[row], focal, unit_bits);
+            }
+        }
+        Self { rows, rests, unit_bits, scale: pose.scale.to_bits() }
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.
@@ -147,6 +226,16 @@ impl ToClip {
     #[inline(always)]
     pub(crate) fn place(&self, position: [i32; 3], axis: usize) -> i32 {
         self.rows[axis].place(position)
+    }
+
+    /// Along one axis, with [`FINE`] bits more: within ±2⁴⁵.
+    ///
+    /// Where they are needed (else these are the 32 bits alone, and as good as these have to be) each is off by less than 9 units:
+    /// 2 by each element (½ by its rounding and 1½ by that of its product with the focal length, at 2¹⁵ steps), 2 by the
+    /// translation, and 1 by what is cut off the sum.
+    pub(super) fn place_fine(&self, position: [I4F12; 3], axis: usize) -> i64 {
+        let position = position.map(|at| i32::from(at.to_bits()));
+        self.rows[axis].place_fine(position, &self.rests[axis])
     }
 
     /// Along all.

@@ -67,7 +67,7 @@ impl Edge {
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
-        // E at the centre in column 0, plus divisor − 1 to round up: below 16392·32752 + 32752² + 524032 < 2³¹.
+        // E at the centre in column 0, plus divisor − 1 to round up: at most 16384·32752 + 32752² + 524032 < 2³¹.
         let below = row * 16 + 8 - top[1];
         let (x, remainder) = reciprocal.div_rem((top[0] - 8) * dy + below * dx + divisor - 1, divisor);
         let (slope, slope_remainder) = reciprocal.div_rem(16 * dx, divisor);

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Divided by the triangle's own area it is the barycentric weight of the corner opposite. In a guard
-//! band 2047 px wide no difference exceeds 2047·16 = 32752, so no edge function exceeds
+//! band of ±1023½ px no difference exceeds 2047·16 = 32752, so no edge function exceeds
 //! 2·32752² = 2 145 387 008 < 2³¹: they are exact in an `i32`.
 //!
 //! # Attributes, and why they are exact enough

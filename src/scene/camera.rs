@@ -1,9 +1,10 @@
 //! The camera: where from and how wide a scene is seen.
 
 use super::LensError;
-use super::projection::{Projection, clamped, limited};
+use super::projection::{MIN_NEAR, Projection, clamped, limited};
 use crate::math::{Pose, Turn, Vec3, normalized};
 use crate::num::{I2F14, I12F4, I16F16, bits_from_f32, bits_or_max};
+use core::fmt;
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -106,22 +107,58 @@ impl Camera {
         Self { projection: Projection::new(focal, orthographic, size), pose: Pose::IDENTITY }
     }
 
-    /// The same with the near plane at this distance, 1/16 before; at least 2⁻¹⁶, also for NaN.
+    /// The same with the near plane at this distance, 1/16 before.
+    ///
+    /// Limited to 1/256 … 32767.99998, of orthographic cameras too; NaN is 1/256. [`Camera::try_near`] says so instead.
     ///
     /// Depth is near/w in 16 bits: the nearer the plane, the coarser the depth of what is far.
     #[must_use]
     pub const fn near(mut self, distance: f32) -> Self {
         let bits = bits_from_f32(distance, 16);
-        self.projection.near = I16F16::from_bits(if bits < 1 { 1 } else { bits });
+        self.projection.near = I16F16::from_bits(if bits < MIN_NEAR { MIN_NEAR } else { bits });
         self
     }
 
-    /// The same with a far plane at this distance, beyond which nothing is drawn.
+    /// As [`Camera::near`], for a distance that is not known to be one that a near plane can have.
+    ///
+    /// ```
+    /// use fixel::{Camera, PlaneError, embedded_graphics::geometry::Size};
+    /// let camera = Camera::focal(100.0, Size::new(160, 120));
+    /// assert_eq!(camera.try_near(0.25), Ok(camera.near(0.25)));
+    /// assert_eq!(camera.try_near(0.001), Err(PlaneError::TooNear));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`PlaneError`] if [`Camera::near`] would have to limit it.
+    pub const fn try_near(self, distance: f32) -> Result<Self, PlaneError> {
+        match PlaneError::of(distance, MIN_NEAR) {
+            Some(error) => Err(error),
+            None => Ok(self.near(distance)),
+        }
+    }
+
+    /// The same with a far plane at this distance, beyond which nothing is drawn: nothing at all, unless the near plane is nearer.
+    ///
+    /// Limited to 2⁻¹⁶ … 32767.99998, which is none for a camera with perspective; NaN is 2⁻¹⁶. [`Camera::try_far`] says so
+    /// instead.
     #[must_use]
     pub const fn far(mut self, distance: f32) -> Self {
         let bits = bits_from_f32(distance, 16);
         self.projection.far = I16F16::from_bits(if bits < 1 { 1 } else { bits });
         self
+    }
+
+    /// As [`Camera::far`], for a distance that is not known to be one that a far plane can have.
+    ///
+    /// # Errors
+    ///
+    /// [`PlaneError`] if [`Camera::far`] would have to limit it.
+    pub const fn try_far(self, distance: f32) -> Result<Self, PlaneError> {
+        match PlaneError::of(distance, 1) {
+            Some(error) => Err(error),
+            None => Ok(self.far(distance)),
+        }
     }
 
     /// The same picture with its top left corner elsewhere on the screen (at most ±1023): `size` is then that of a part
@@ -278,6 +315,43 @@ const fn limits(pixels: f32, size: Size) -> Option<LensError> {
     }
 }
 
+/// A distance that a clipping plane cannot have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaneError {
+    /// Below 1/256 for a near plane, below 2⁻¹⁶ for a far one.
+    TooNear,
+    /// 32768 or more.
+    TooFar,
+    /// Not a number.
+    NotANumber,
+}
+
+impl PlaneError {
+    const fn of(distance: f32, least: i32) -> Option<Self> {
+        if distance.is_nan() {
+            Some(Self::NotANumber)
+        } else if distance >= 32768.0 {
+            Some(Self::TooFar)
+        } else if bits_from_f32(distance, 16) < least {
+            Some(Self::TooNear)
+        } else {
+            None
+        }
+    }
+}
+
+impl fmt::Display for PlaneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::TooNear => "a near plane is at least 1/256 away, a far one 1/65536",
+            Self::TooFar => "a clipping plane is less than 32768 away",
+            Self::NotANumber => "the distance of a clipping plane is not a number",
+        })
+    }
+}
+
+impl core::error::Error for PlaneError {}
+
 /// The point of the world at a place in the space of an eye (within ±2⁴⁶, I16F16), saturated at the world's ends.
 fn moved(pose: &Pose, eye: [i64; 3]) -> Vec3 {
     let along = |axis: usize| {
@@ -375,13 +449,42 @@ mod tests {
     }
 
     #[test]
+    fn near_planes_are_at_least_a_256th_away_and_try_near_says_so() {
+        for camera in [Camera::focal(80.0, SIZE), Camera::orthographic(8.0, SIZE)] {
+            for (distance, error) in [
+                (0.0, PlaneError::TooNear),
+                (-1.0, PlaneError::TooNear),
+                (f32::NEG_INFINITY, PlaneError::TooNear),
+                (1.0 / 65536.0, PlaneError::TooNear),
+                (255.0 / 65536.0, PlaneError::TooNear),
+                (f32::NAN, PlaneError::NotANumber),
+            ] {
+                assert_eq!(camera.near(distance).planes().0.to_bits(), 256, "{distance}");
+                assert_eq!(camera.try_near(distance), Err(error), "{distance}");
+            }
+            for distance in [32768.0, f32::INFINITY, f32::MAX] {
+                assert_eq!(camera.near(distance).planes().0, I16F16::MAX);
+                assert_eq!(camera.try_near(distance), Err(PlaneError::TooFar));
+                assert_eq!(camera.try_far(distance), Err(PlaneError::TooFar));
+            }
+            for (distance, bits) in [(1.0 / 256.0, 256), (257.0 / 65536.0, 257), (32767.0, 32767 << 16)] {
+                let near = camera.try_near(distance).expect("near enough and far enough");
+                assert_eq!((near.planes().0.to_bits(), near), (bits, camera.near(distance)));
+            }
+            assert_eq!(camera.try_far(1.0 / 65536.0), Ok(camera.far(1.0 / 65536.0)));
+            assert_eq!(camera.try_far(0.0), Err(PlaneError::TooNear));
+            assert_eq!(camera.try_far(f32::NAN), Err(PlaneError::NotANumber));
+        }
+    }
+
+    #[test]
     fn nothing_panics_on_numbers_that_are_none() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, -1.0, f32::MAX, f32::MIN_POSITIVE] {
             let camera = Camera::focal(bad, SIZE)
                 .near(bad)
                 .at(Vec3::lit(bad, bad, bad))
                 .look_at(Vec3::lit(bad, 0.0, bad), Vec3::lit(0.0, bad, bad));
-            assert!(camera.projection.focal.to_bits() >= 1 << 12 && camera.projection.near > 0);
+            assert!(camera.projection.focal.to_bits() >= 1 << 12 && camera.projection.near >= 1.0 / 256.0);
         }
         let _ = Camera::perspective(Turn::ZERO, Size::new(0, u32::MAX));
         let same = Camera::focal(80.0, SIZE);

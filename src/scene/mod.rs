@@ -10,7 +10,7 @@ mod texture;
 mod vertex;
 mod vertex_error;
 
-pub use camera::Camera;
+pub use camera::{Camera, PlaneError};
 pub use lens_error::LensError;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub(crate) use mesh::Bounds;

@@ -9,7 +9,7 @@ pub(crate) struct Projection {
     /// Perspective: the focal length in pixels. Orthographic: the pixels of one world unit. 1/16 … 8191.
     pub(crate) focal: I16F16,
     pub(crate) orthographic: bool,
-    /// Distance of the near plane, above 0.
+    /// Distance of the near plane, [`MIN_NEAR`] or more.
     pub(crate) near: I16F16,
     /// Distance of the far plane, above the near one; for perspective `I16F16::MAX` is none.
     pub(crate) far: I16F16,
@@ -27,6 +27,10 @@ pub(crate) struct Viewport {
     pub(crate) width: i16,
     pub(crate) height: i16,
 }
+
+/// The least distance of the near plane, 1/256, in 1/65536. Nearer than that 31 bits of q do not hold the attributes of what
+/// reaches far away, nor clipping's numbers the corners of what is large.
+pub(crate) const MIN_NEAR: i32 = 1 << 8;
 
 const MIN_FOCAL: i32 = 1 << 12;
 const MAX_FOCAL: i32 = 8191 << 16;

@@ -8,8 +8,8 @@ use crate::reference::{ATTRIBUTES, Corner, Triangle};
 /// A place on the screen in 1/16 pixel.
 pub(crate) type Place = (i32, i32);
 
-/// The guard band, in 1/16 pixel.
-pub(crate) const GUARD_BAND: std::ops::RangeInclusive<i32> = -1024 * 16..=1023 * 16;
+/// The guard band of ±1023½ pixels, in 1/16 pixel.
+pub(crate) const GUARD_BAND: std::ops::RangeInclusive<i32> = -(1023 * 16 + 8)..=1023 * 16 + 8;
 
 /// Ways to place three vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -25,8 +25,8 @@ pub(crate) struct Lens {
     pub(crate) orthographic: bool,
 }
 
-/// The last pixel columns and rows that a picture may reach before it is clipped: −1023 … 1022.
-const GUARD_BAND: [f64; 2] = [-1023.0, 1022.0];
+/// How far a picture may reach before it is clipped, in pixels: beyond the centres of columns and rows −1023 … 1022.
+const GUARD_BAND: [f64; 2] = [-1022.75, 1022.75];
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {

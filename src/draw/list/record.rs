@@ -268,10 +268,7 @@ impl Recorder<'_, '_> {
         stats.count(|stats| &mut stats.clipped);
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        let Some(count) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon) else {
-            stats.count(|stats| &mut stats.rejected);
-            return Ok(());
-        };
+        let count = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
         }
