@@ -130,7 +130,7 @@ mod target;
 pub use embedded_graphics;
 pub use fixed;
 
-pub use math::{Pose, Quaternion, Turn, Vec3};
+pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use pipeline::{
     Affine, Coloring, Cull, Exact, Inputs, Pixels, Quality, QuarterPixel, RangeError, ScreenVertex, Shader,
     Stats, Varying, draw_triangle,

@@ -7,7 +7,7 @@ mod turn;
 mod unit;
 mod vec;
 
-pub use pose::Pose;
+pub use pose::{Pose, ScaleError};
 pub use quaternion::Quaternion;
 pub use turn::Turn;
 pub(crate) use unit::normalized;

@@ -155,17 +155,21 @@ impl Clip {
     }
 
     /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
+    ///
+    /// The bounds are a sphere in the mesh. Whatever it becomes before the camera, it reaches as far beyond a plane as its
+    /// centre does, and further by radius times gradient of what measures that distance. Four units more are for rounding.
     #[inline(never)]
     pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
-        let (center, radius) = &to_clip.bounds(bounds);
+        let center = to_clip.place_all(bounds.center);
         let (w, viewport) = (i64::from(center[2]), &projection.viewport);
+        let radius = i64::from(bounds.radius);
+        let reach = radius * to_clip.steepness(None, 0, -1) + 4;
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
-        if self.near >= self.far || w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
+        if self.near >= self.far || w + reach < i64::from(self.near) || w - reach > i64::from(self.far) {
             return false;
         }
         // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
         // side : focal length; all in 1/16 px.
-        let focal = i64::from(projection.focal.to_bits()) >> 12;
         let sides = [
             (0, -1, i32::from(viewport.left)),
             (0, 1, i32::from(viewport.left) + i32::from(viewport.width)),
@@ -173,12 +177,12 @@ impl Clip {
             (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
         ];
         sides.iter().all(|&(axis, sign, side)| {
-            let slope = i64::from(side) * 16 - i64::from(projection.center[axis]);
+            let slope = side * 16 - projection.center[axis];
             let across = i64::from(center[axis]) << self.scale;
-            let outside = (across - slope * i64::from(self.divisor(center[2]))) * sign;
-            let length =
-                if self.flat != 0 { focal + 1 } else { length(focal as u32, slope.unsigned_abs() as u32) };
-            outside <= (radius + 1) * length
+            let outside = (across - i64::from(slope) * i64::from(self.divisor(center[2]))) * sign;
+            let of_w = if self.flat != 0 { 0 } else { slope };
+            let rounding = (1 << self.scale) + i64::from(of_w.unsigned_abs());
+            outside <= radius * to_clip.steepness(Some(axis), self.scale, of_w) + 4 * rounding
         })
     }
 
@@ -186,7 +190,7 @@ impl Clip {
     pub(super) fn place(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         vertex: &Vertex,
         to: &mut ScreenVertex,
     ) -> bool {
@@ -276,22 +280,4 @@ impl Clip {
         *to_y = I12F4::from_bits(y as i16);
         range.contains(&y)
     }
-}
-
-/// Just more than √(a² + b²). The library's root divides.
-#[inline(never)]
-fn length(a: u32, b: u32) -> i64 {
-    let mut shift = 0;
-    while (a | b) >> shift >= 1 << 14 {
-        shift += 1;
-    }
-    let [a, b] = [a, b].map(|side| (side >> shift) + u32::from(shift > 0));
-    let mut root = 0;
-    for bit in (0..15).rev() {
-        let next = root | 1 << bit;
-        if next * next <= a * a + b * b {
-            root = next;
-        }
-    }
-    i64::from(root + 1) << shift
 }

@@ -7,7 +7,7 @@
 
 use crate::math::Pose;
 use crate::num::{I4F12, I16F16, U8F8, mul_round, shift_round};
-use crate::scene::{Bounds, Projection};
+use crate::scene::Projection;
 
 /// A vertex in clip space: what stands before the division by w.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,6 @@ pub(super) struct ToClip {
     /// For x, y and w.
     rows: [Row; 3],
     unit_bits: i32,
-    /// The pose's, U10F22.
-    scale: u32,
 }
 
 /// From a position in the mesh to one clip coordinate.
@@ -86,6 +84,7 @@ impl ToClip {
             let (to, from) = (pose.translation.bits(), camera.translation.bits());
             core::array::from_fn(|i| i64::from(to[i]) - i64::from(from[i]))
         };
+        let scale = pose.scale.map(|scale| i64::from(scale.to_bits()));
         // 28 fraction bits (4.0 at most) times 22 are 50; 14 times 16 are 30.
         let mut matrix = [[0i64; 3]; 3];
         let mut translation = [0i64; 3];
@@ -93,7 +92,7 @@ impl ToClip {
             let axis = axis(row).map(|component| component * sign);
             matrix[row] = core::array::from_fn(|column| {
                 let sum = dot(axis, pose.rotation.map(|r| i64::from(r[column].to_bits())));
-                sum.clamp(-1 << 30, 1 << 30) * i64::from(pose.scale.to_bits())
+                sum.clamp(-1 << 30, 1 << 30) * scale[column]
             });
             translation[row] = dot(axis, distance);
         }
@@ -126,7 +125,7 @@ impl ToClip {
             });
             Row::new(elements, times_focal(to_i32(translation[row], 30 - unit_bits)))
         });
-        Self { rows, unit_bits, scale: pose.scale.to_bits() }
+        Self { rows, unit_bits }
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.
@@ -134,11 +133,23 @@ impl ToClip {
         self.unit_bits
     }
 
-    /// The bounds' centre (x, y and w), and the radius in clip units, rounded up by more than a rotation's elements are
-    /// rounded.
-    pub(super) fn bounds(&self, bounds: &Bounds) -> ([i32; 3], i64) {
-        let radius = (i64::from(bounds.radius) * i64::from(self.scale)) >> (34 - self.unit_bits);
-        (self.place_all(bounds.center), radius + (radius >> 10) + 4)
+    /// How much `axis`' coordinate (0 for x, 1 for y) · 2^`log2` − w · `slope` changes at most over one step of mesh positions,
+    /// in whichever direction: the length of its gradient, rounded up. A `log2` of 0 … 17, a slope within ±2¹⁶; for w alone −1
+    /// of it and no axis.
+    ///
+    /// From the elements themselves: so it is right for every matrix, one that stretches, shears or mirrors, too.
+    #[inline(never)]
+    pub(super) fn steepness(&self, axis: Option<usize>, log2: i32, slope: i32) -> i64 {
+        let [.., w] = &self.rows;
+        let across = axis.and_then(|axis| self.rows.get(axis));
+        // The elements' upper halves: below 2¹³ · 2¹⁷ + 2¹⁶ · 2¹³.
+        let gradient = core::array::from_fn(|i| {
+            let across = across.map_or(0, |row| (row.elements[i] >> 16) << log2);
+            (across - (w.elements[i] >> 16) * slope).unsigned_abs()
+        });
+        // Each half is within ½ of its element, all three within √¾.
+        let rest = if across.is_some() { 1 << log2 } else { 0 } + i64::from(slope.unsigned_abs());
+        length(gradient) + rest
     }
 
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.
@@ -153,6 +164,25 @@ impl ToClip {
         let position = position.map(|at| i32::from(at.to_bits()));
         self.rows.each_ref().map(|row| row.place(position))
     }
+}
+
+/// Just more than √(a² + b² + c²), of numbers below 2³¹. The library's root divides.
+fn length(sides: [u32; 3]) -> i64 {
+    let all = sides.iter().fold(0, |all, side| all | side);
+    let mut shift = 0;
+    while all >> shift >= 1 << 14 {
+        shift += 1;
+    }
+    let squares: u32 =
+        sides.iter().map(|side| (side >> shift) + u32::from(shift > 0)).map(|side| side * side).sum();
+    let mut root = 0;
+    for bit in (0..15).rev() {
+        let next = root | 1 << bit;
+        if next * next <= squares {
+            root = next;
+        }
+    }
+    i64::from(root + 1) << shift
 }
 
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
