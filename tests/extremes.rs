@@ -195,7 +195,7 @@ fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
 }
 
 #[test]
-fn every_mesh_pose_camera_and_target_at_its_extremes_72_576_combinations() {
+fn every_mesh_pose_camera_and_target_at_its_extremes_86_184_combinations() {
     let texels: Vec<u16> = (0..1 << 10).collect();
     let texture = Texture::new(&texels, 5, 5);
     let lights = [
@@ -212,5 +212,5 @@ fn every_mesh_pose_camera_and_target_at_its_extremes_72_576_combinations() {
     ];
     let (drawn, seen) = draw_all(0, &materials);
     println!("extremes: {drawn} combinations, {seen} of them with a pixel");
-    assert!(drawn == 72_576 && seen > 800);
+    assert!(drawn == 86_184 && seen > 800);
 }

@@ -185,6 +185,7 @@ impl Pose {
     /// A mesh is then drawn with its fronts in front, though they run the other way round on the screen. The same goes for the
     /// mirror image that a camera shows whose pose is mirrored; where both are nothing is.
     #[must_use]
+    #[inline(never)]
     pub const fn is_mirrored(&self) -> bool {
         let rows = [bits(self.rotation[0]), bits(self.rotation[1]), bits(self.rotation[2])];
         dot(rows[0], cross(rows[1], rows[2])) < 0
@@ -192,6 +193,7 @@ impl Pose {
 
     /// Whether what it places keeps its angles: all axes have one scale, and the matrix is a rotation or mirrors one, give or
     /// take what turning it a few times takes away: RᵀR is 1 but for 2⁻¹⁰, summed up over each row.
+    #[inline(never)]
     pub(crate) const fn keeps_angles(&self) -> bool {
         const SIDE: i32 = (1 << 14) + (1 << 6);
         const MOST: i32 = 1 << 18;
@@ -245,8 +247,8 @@ impl Pose {
     /// If not, a child that is turned in its parent is sheared by the parent's stretch (but where it is turned by quarters
     /// about the axes): no scales and no rotation make that. The result then has the sheared axes in its `rotation`, as
     /// columns of length 1 that are not at right angles, and their lengths, within 2⁻²⁷ of themselves and a bit, in its `scale`.
-    /// It draws, lights, transforms, composes and inverts as exactly as any other; what asks for
-    /// [the rotation itself](Pose::quaternion) gets the nearest.
+    /// It draws, lights, transforms, composes and inverts as exactly as any other, as far as its elements of 14 bits tell columns
+    /// from each other; what asks for [the rotation itself](Pose::quaternion) gets the nearest.
     #[must_use]
     pub const fn then(self, outer: Self) -> Self {
         let (mut rotation, mut scale) = (outer.rotation, self.scale);
@@ -316,28 +318,33 @@ impl Pose {
     const fn inverse_of_any_matrix(&self) -> ([[I2F14; 3]; 3], [U10F22; 3]) {
         let cofactors = self.cofactors();
         let determinant = dot(bits(self.rotation[0]), cofactors[0]); // 42 fraction bits, below 2⁴⁸
-        // 2⁴⁰ times reciprocals, below 2⁶³; then 31 bits of the largest and as fine ones of the others.
-        let mut reciprocals = [0u64; 3];
-        let mut all = 1;
+        // 2⁴⁰ times reciprocals are 31 bits times 2^(33 − zeros).
+        let (mut reciprocals, mut zeros) = ([0i32; 3], [0u32; 3]);
         let mut i = 0;
         while i < 3 {
             let scale = self.scale[i].to_bits() as u64;
-            reciprocals[i] = (1 << 62) / if scale > 0 { scale } else { 1 };
-            all |= reciprocals[i];
+            let reciprocal = (1u64 << 62) / if scale > 0 { scale } else { 1 };
+            zeros[i] = reciprocal.leading_zeros();
+            reciprocals[i] = ((reciprocal << zeros[i]) >> 33) as i32;
             i += 1;
         }
-        let zeros = all.leading_zeros();
         let (mut rotation, mut scale) = (self.rotation, self.scale);
         let mut column = 0;
         while column < 3 {
-            let mut v = [0; 3];
+            // Below 2⁶², in the largest unit of those that are not 0.
+            let (mut v, mut unit) = ([0; 3], 33);
             i = 0;
             while i < 3 {
-                let reciprocal = ((reciprocals[i] << zeros) >> 33) as i32;
-                v[i] = wide(cofactors[column][i], reciprocal); // below 2⁶²
+                v[i] = wide(cofactors[column][i], reciprocals[i]);
+                unit = if v[i] != 0 && zeros[i] < unit { zeros[i] } else { unit };
                 i += 1;
             }
-            // The column is v · 2^(7 − zeros) / determinant.
+            i = 0;
+            while i < 3 {
+                v[i] >>= if v[i] != 0 { zeros[i] - unit } else { 0 };
+                i += 1;
+            }
+            // The column is v · 2^(7 − unit) / determinant.
             let axis = match normalized(v) {
                 Some(axis) => axis,
                 None => [0; 3],
@@ -348,7 +355,7 @@ impl Pose {
                 rotation[i][column] = round14(component as i64, 16);
                 i += 1;
             }
-            scale[column] = quotient(length(v), determinant.unsigned_abs(), 29 - zeros as i32);
+            scale[column] = quotient(length(v), determinant.unsigned_abs(), 29 - unit as i32);
             column += 1;
         }
         (rotation, scale)
@@ -581,8 +588,9 @@ const fn quotient(dividend: u64, divisor: u64, exponent: i32) -> U10F22 {
     }
 }
 
-/// Below 2⁶³, as one factor of each product is at most 2³⁰.
-const fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
+/// Below 2⁶³, as one factor of each product is at most 2³⁰. Not inlined: on Armv6-M it is long.
+#[inline(never)]
+pub(crate) const fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
 }
 

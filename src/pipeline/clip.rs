@@ -157,33 +157,41 @@ impl Clip {
     /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
     ///
     /// The bounds are a sphere in the mesh. Whatever it becomes before the camera, it reaches as far beyond a plane as its
-    /// centre does, and further by radius times gradient of what measures that distance. Four units more are for rounding.
+    /// centre does, and further by [radius times gradient](ToClip::reach) of what measures that distance.
     #[inline(never)]
     pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
         let center = to_clip.place_all(bounds.center);
         let (w, viewport) = (i64::from(center[2]), &projection.viewport);
-        let radius = i64::from(bounds.radius);
-        let reach = radius * to_clip.steepness(None, 0, -1) + 4;
+        let reach = to_clip.reach(bounds.radius, 2, 0, 0);
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
         if self.near >= self.far || w + reach < i64::from(self.near) || w - reach > i64::from(self.far) {
             return false;
         }
-        // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
-        // side : focal length; all in 1/16 px.
         let sides = [
             (0, -1, i32::from(viewport.left)),
             (0, 1, i32::from(viewport.left) + i32::from(viewport.width)),
             (1, -1, i32::from(viewport.top)),
             (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
         ];
-        sides.iter().all(|&(axis, sign, side)| {
+        sides.into_iter().all(|(axis, sign, side)| {
             let slope = side * 16 - projection.center[axis];
-            let across = i64::from(center[axis]) << self.scale;
-            let outside = (across - i64::from(slope) * i64::from(self.divisor(center[2]))) * sign;
-            let of_w = if self.flat != 0 { 0 } else { slope };
-            let rounding = (1 << self.scale) + i64::from(of_w.unsigned_abs());
-            outside <= radius * to_clip.steepness(Some(axis), self.scale, of_w) + 4 * rounding
+            self.reaches(to_clip, [center[axis], center[2]], bounds.radius, (axis, sign, slope))
         })
+    }
+
+    /// Whether a mesh's bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that
+    /// lies at a slope of side : focal length, in 1/16 px.
+    #[inline(never)]
+    fn reaches(
+        &self,
+        to_clip: &ToClip,
+        [across, w]: [i32; 2],
+        radius: i32,
+        (axis, sign, slope): (usize, i64, i32),
+    ) -> bool {
+        let across = i64::from(across) << self.scale;
+        let outside = (across - i64::from(slope) * i64::from(self.divisor(w))) * sign;
+        outside <= to_clip.reach(radius, axis, self.scale, if self.flat != 0 { 0 } else { slope })
     }
 
     /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.

@@ -36,6 +36,7 @@ pub(crate) fn draw<F, D, S>(
     S: Shader<F>,
 {
     stats.count(|stats| &mut stats.meshes);
+    let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
     let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
@@ -56,7 +57,7 @@ pub(crate) fn draw<F, D, S>(
         to_clip: &to_clip,
         clip: &clip,
         coloring,
-        cull: shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored()),
+        cull,
         light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
     };
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);

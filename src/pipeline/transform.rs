@@ -133,23 +133,22 @@ impl ToClip {
         self.unit_bits
     }
 
-    /// How much `axis`' coordinate (0 for x, 1 for y) · 2^`log2` − w · `slope` changes at most over one step of mesh positions,
-    /// in whichever direction: the length of its gradient, rounded up. A `log2` of 0 … 17, a slope within ±2¹⁶; for w alone −1
-    /// of it and no axis.
+    /// How much a coordinate · 2^`log2` − w · `slope` changes at most over `radius` steps of mesh positions, in whichever
+    /// direction: radius times gradient, rounded up, and four clip units for rounding. A `log2` of 0 … 17, a slope within ±2¹⁶.
     ///
-    /// From the elements themselves: so it is right for every matrix, one that stretches, shears or mirrors, too.
+    /// The gradient is that of the elements themselves: so this is right for every matrix, one that stretches, shears or mirrors,
+    /// too.
     #[inline(never)]
-    pub(super) fn steepness(&self, axis: Option<usize>, log2: i32, slope: i32) -> i64 {
+    pub(super) fn reach(&self, radius: i32, axis: usize, log2: i32, slope: i32) -> i64 {
         let [.., w] = &self.rows;
-        let across = axis.and_then(|axis| self.rows.get(axis));
+        let across = &self.rows[axis];
         // The elements' upper halves: below 2¹³ · 2¹⁷ + 2¹⁶ · 2¹³.
         let gradient = core::array::from_fn(|i| {
-            let across = across.map_or(0, |row| (row.elements[i] >> 16) << log2);
-            (across - (w.elements[i] >> 16) * slope).unsigned_abs()
+            (((across.elements[i] >> 16) << log2) - (w.elements[i] >> 16) * slope).unsigned_abs()
         });
         // Each half is within ½ of its element, all three within √¾.
-        let rest = if across.is_some() { 1 << log2 } else { 0 } + i64::from(slope.unsigned_abs());
-        length(gradient) + rest
+        let unit = (1 << log2) + slope.unsigned_abs();
+        i64::from(radius) * i64::from(length(gradient) + unit) + i64::from(4 * unit)
     }
 
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.
@@ -166,23 +165,24 @@ impl ToClip {
     }
 }
 
-/// Just more than √(a² + b² + c²), of numbers below 2³¹. The library's root divides.
-fn length(sides: [u32; 3]) -> i64 {
-    let all = sides.iter().fold(0, |all, side| all | side);
+/// Just more than √(a² + b² + c²), of numbers below 2³⁰·⁶. The library's root divides.
+fn length(sides: [u32; 3]) -> u32 {
+    let all = sides[0] | sides[1] | sides[2];
     let mut shift = 0;
     while all >> shift >= 1 << 14 {
         shift += 1;
     }
-    let squares: u32 =
-        sides.iter().map(|side| (side >> shift) + u32::from(shift > 0)).map(|side| side * side).sum();
-    let mut root = 0;
-    for bit in (0..15).rev() {
-        let next = root | 1 << bit;
+    // Rounded up, and 1 more where nothing is to be rounded.
+    let squares: u32 = sides.iter().map(|side| (side >> shift) + 1).map(|side| side * side).sum();
+    let (mut root, mut bit) = (0, 1 << ((31 - squares.leading_zeros()) / 2));
+    while bit > 0 {
+        let next = root | bit;
         if next * next <= squares {
             root = next;
         }
+        bit >>= 1;
     }
-    i64::from(root + 1) << shift
+    (root + 1) << shift
 }
 
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {

@@ -291,7 +291,12 @@ fn a_child_of_a_stretched_parent_is_where_both_matrices_put_it_in_20_000_cases()
         if (0..3).any(|i| long(column(exact, i)) > 1023.0) {
             return [0.0];
         }
-        assert_eq!(both.is_mirrored(), inner.is_mirrored() != outer.is_mirrored());
+        // Columns of length 1 almost in a plane may change sides of it as they are rounded.
+        let determinant: f64 = [inner, outer].iter().flat_map(|pose| pose.scale).map(f64::from).product();
+        let lengths: f64 = (0..3).map(|i| long(column(exact, i))).product();
+        if determinant / lengths > 1e-3 {
+            assert_eq!(both.is_mirrored(), inner.is_mirrored() != outer.is_mirrored());
+        }
         [columns_off(linear(&both), exact)]
     });
 }
@@ -328,7 +333,11 @@ fn inverse_undoes_stretch_shear_and_mirrors_in_20_000_cases() {
             if (0..3).any(|i| long(column(exact, i)) > 1023.0) {
                 continue;
             }
-            assert_eq!(inverse.is_mirrored(), pose.is_mirrored());
+            // Columns of length 1 almost in a plane may change sides of it as they are rounded.
+            let lengths: f64 = (0..3).map(|i| long(column(exact, i))).product();
+            if (determinant * lengths).recip().abs() > 1e-3 {
+                assert_eq!(inverse.is_mirrored(), pose.is_mirrored());
+            }
             worst = worst.max(columns_off(linear(&inverse), exact));
         }
         [worst]

@@ -11,11 +11,11 @@ mod normal;
 mod stretch;
 
 use crate::math::recip::Reciprocal;
-use crate::math::{Pose, Vec3, normalized};
+use crate::math::{Pose, Vec3, dot, normalized};
 use crate::num::{I2F14, I4F12, I16F16, U8F8, wide};
 use crate::scene::Vertex;
 use core::{array, fmt, num::NonZeroU16};
-use normal::{Direction, magnitude64};
+use normal::{Direction, across_face, magnitude64};
 
 pub use normal::Normal;
 
@@ -204,26 +204,33 @@ impl Lighting<'_> {
     /// colour · attenuation, limited to 255.0; `two_sided`: |n·l|.
     ///
     /// `normal` is one of the mesh; where the pose stretches the mesh, the light is that on the stretched surface. It is taken as it
-    /// is: one that is too short gives less light. Within ¼ (of 255) of exact from the
-    /// quantised normal, pose and lights, if the pose's rotation is one (or mirrors one) and no point light is nearer than
-    /// 1/1000 of a mesh unit (of the longest, if the pose's scales differ) and 2⁻¹⁴ of a unit of the world. A matrix that is no
-    /// rotation may add as much again if no direction is stretched more than 8 times as much as another by it (the scales do not
-    /// count). Whatever the numbers, within 0 … 255. A
-    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
-    /// point light 20 and a reciprocal square root (400), less if it does not reach; a pose that does not keep angles 600.
+    /// is: one that is too short gives less light.
+    ///
+    /// Within ¼ (of 255) of exact from the quantised normal, pose and lights, if the pose's matrix is a rotation or mirrors one, or
+    /// at least stretches no direction more than 8 times as much as another (the scales do not count), and no point light is
+    /// nearer than 1/1000 of a mesh unit (the longest, if scales differ) and 2⁻¹⁴ of a unit of the world. A rotation worn by
+    /// many turns, but not yet by so much that its normals are treated as stretched, may be another ½ off. Whatever the numbers,
+    /// within 0 … 255.
+    ///
+    /// A directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
+    /// point light 20 and a reciprocal square root (400), less if it does not reach; a stretched normal and place 600.
     #[must_use]
     pub fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
-        match self.stretched {
-            None => self.arriving(unstretched(position), normal, two_sided),
-            Some(pose) => {
-                self.arriving(stretch::place(pose, position), stretch::normal(pose, normal), two_sided)
-            }
-        }
+        let normal = match self.stretched {
+            None => normal,
+            Some(pose) => stretch::normal(pose, normal),
+        };
+        self.arriving(position, normal, two_sided)
     }
 
-    /// As [`Lighting::at`], with a place (26 fraction bits) and a normal in the space that the lights are in.
+    /// As [`Lighting::at`], with a normal along the axes that the lights are in.
     #[inline(never)]
-    fn arriving(&self, place: [i32; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
+    fn arriving(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
+        // 26 fraction bits.
+        let place = match self.stretched {
+            None => position.map(|at| i32::from(at.to_bits()) << 14),
+            Some(pose) => stretch::place(pose, position),
+        };
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in self.lights() {
             let (cosine, color) = match light {
@@ -269,25 +276,18 @@ impl Lighting<'_> {
             // A third less 2·10⁻⁵ of it; below 2³¹.
             I4F12::from_bits(((sum * 21845) >> 16) as i16)
         });
-        match self.stretched {
-            None => self.arriving(unstretched(middle), Normal::of_face(corners), two_sided),
-            Some(pose) => {
-                let normal = stretch::face_normal(pose, corners);
-                self.arriving(stretch::place(pose, middle), normal, two_sided)
-            }
-        }
+        let across = across_face(corners);
+        let normal = match self.stretched {
+            None => Normal::along(across),
+            Some(pose) => stretch::across(pose, across),
+        };
+        self.arriving(middle, normal, two_sided)
     }
 
     #[inline(always)]
     fn lights(&self) -> &[Local] {
         self.lights.get(..usize::from(self.count)).unwrap_or_default()
     }
-}
-
-/// A place of the mesh with 26 fraction bits.
-#[inline(always)]
-fn unstretched(position: [I4F12; 3]) -> [i32; 3] {
-    position.map(|at| i32::from(at.to_bits()) << 14)
 }
 
 /// Light of 14 fraction bits.
@@ -306,7 +306,7 @@ fn facing(cosine: i32, two_sided: bool) -> u32 {
 #[inline(never)]
 fn turned_back(rotation: &[[I2F14; 3]; 3], direction: [i32; 3]) -> [i16; 3] {
     array::from_fn(|column| {
-        let sum: i64 = (0..3).map(|row| wide(rotation[row][column].to_bits().into(), direction[row])).sum();
+        let sum = dot(rotation.map(|row| row[column].to_bits().into()), direction);
         // 15 bits; beyond ±1 only if the rotation is none.
         let component = ((sum + (1 << 28)) >> 29).clamp(-1 << 15, 1 << 15) as i32;
         ((component * 16513 + (1 << 14)) >> 15) as i16

@@ -18,7 +18,7 @@ impl Normal {
     }
 
     /// Of length 1, as a vector; 0 for 0.
-    #[inline]
+    #[inline(never)]
     pub(super) fn along(vector: [i32; 3]) -> Self {
         let Some(direction) = Direction::of(vector) else { return Self([0; 3]) };
         let (inverse, shift) = direction.inverse_length();
@@ -115,7 +115,7 @@ impl Direction {
 
 /// Across a face, from the side from which its corners run counter-clockwise: exact, or of 30 bits where an edge is 8 units or
 /// longer.
-#[inline]
+#[inline(never)]
 pub(super) fn across_face([a, b, c]: [[I4F12; 3]; 3]) -> [i32; 3] {
     let edge = |to: [I4F12; 3]| -> [i32; 3] {
         array::from_fn(|i| i32::from(to[i].to_bits()) - i32::from(a[i].to_bits()))
