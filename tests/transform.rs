@@ -422,6 +422,25 @@ fn a_quad_that_a_matrix_stretches_into_the_picture_is_drawn() {
     }
 }
 
+#[test]
+fn a_pillar_beside_the_picture_is_left_out_whole() {
+    let screen = Strip::new(64, 64, 0);
+    // It sees 10 · tan 30° = 5.77 to each side there. 8 units of the pillar are 800 up and down, and 0.8 wide.
+    let camera = Camera::perspective(Turn::from_degrees(60), screen.size());
+    let pillar = Pose::IDENTITY.stretched_lit(0.1, 100.0, 0.1);
+    for (x, is_seen) in [(6.0, true), (-6.0, true), (8.0, false), (-8.0, false)] {
+        let mut drawn = Record::blank(screen);
+        let mut band = Band::<Recording, Counting>::new(screen.size(), &mut drawn.pixels, &mut drawn.depth)
+            .expect("the sizes agree");
+        let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
+        let mut stats = Stats::default();
+        let pose = pillar.at(Vec3::lit(x, 0.0, -10.0));
+        camera.draw_counted(&CUBE.mesh(), &pose, &shader, &mut band, &mut stats);
+        assert_eq!(stats.meshes_out_of_sight, u32::from(!is_seen), "at {x}");
+        assert_eq!(drawn.iter().any(|(_, _, met)| met.times > 0), is_seen, "at {x}");
+    }
+}
+
 /// How much light of a source arrives at a place of the world that faces so: 0 … 1.
 fn arrives(light: &Source, place: [f64; 3], normal: [f64; 3]) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

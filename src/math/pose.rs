@@ -21,7 +21,7 @@ use core::ops::Mul;
 /// - With a column turned round (each element negated) it is the mirror image, and what was the front is the front:
 ///   [`Pose::is_mirrored`].
 /// - With axes of different scale, or a matrix that is no rotation, light falls on the surface as it lies in the world (its normals
-///   are those of the stretched surface). This takes some 600 cycles more a vertex that is lit, on a Cortex-M0+; poses that keep
+///   are those of the stretched surface). This takes some 800 cycles more a vertex that is lit, on a Cortex-M0+; poses that keep
 ///   angles pay nothing.
 ///
 /// ```
@@ -191,42 +191,26 @@ impl Pose {
         dot(rows[0], cross(rows[1], rows[2])) < 0
     }
 
-    /// Whether what it places keeps its angles: all axes have one scale, and the matrix is a rotation or mirrors one, give or
-    /// take what turning it a few times takes away: RᵀR is 1 but for 2⁻¹⁰, summed up over each row.
-    #[inline(never)]
+    /// Whether what it places keeps its angles.
     pub(crate) const fn keeps_angles(&self) -> bool {
-        const SIDE: i32 = (1 << 14) + (1 << 6);
-        const MOST: i32 = 1 << 18;
         let [x, y, z] = self.scale;
-        if x.to_bits() != y.to_bits() || y.to_bits() != z.to_bits() {
-            return false;
-        }
-        let columns =
-            [column_of(&self.rotation, 0), column_of(&self.rotation, 1), column_of(&self.rotation, 2)];
-        let mut i = 0;
-        while i < 9 {
-            let element = columns[i / 3][i % 3];
-            if element > SIDE || element < -SIDE {
-                return false; // With all within this, sums of three products fit.
-            }
-            i += 1;
-        }
-        i = 0;
-        while i < 3 {
-            let mut off = 0;
-            let mut j = 0;
-            while j < 3 {
-                let ([a, b, c], [d, e, f]) = (columns[i], columns[j]);
-                let miss = (a * d + b * e + c * f - if i == j { 1 << 28 } else { 0 }).abs();
-                if miss > MOST - off {
-                    return false;
-                }
-                off += miss;
-                j += 1;
-            }
-            i += 1;
-        }
-        true
+        x.to_bits() == y.to_bits() && y.to_bits() == z.to_bits() && self.is_orthonormal()
+    }
+
+    /// Whether the matrix is a rotation or mirrors one, give or take what turning it a few times takes away: RᵀR is 1 but for
+    /// 2⁻¹⁰, summed up over each row.
+    #[inline(never)]
+    pub(crate) const fn is_orthonormal(&self) -> bool {
+        let rotation = &self.rotation;
+        let [x, y, z] = [column_of(rotation, 0), column_of(rotation, 1), column_of(rotation, 2)];
+        // 28 fraction bits. What wraps is far from 0 and 1 also then: the sums are within ±3 · 2³⁰.
+        let [xx, yy, zz] = [wrapping_dot(x, x), wrapping_dot(y, y), wrapping_dot(z, z)];
+        let [xx, yy, zz] = [off(xx, 1 << 28), off(yy, 1 << 28), off(zz, 1 << 28)];
+        let [xy, yz, zx] =
+            [off(wrapping_dot(x, y), 0), off(wrapping_dot(y, z), 0), off(wrapping_dot(z, x), 0)];
+        xx.saturating_add(xy).saturating_add(zx) <= 1 << 18
+            && yy.saturating_add(xy).saturating_add(yz) <= 1 << 18
+            && zz.saturating_add(yz).saturating_add(zx) <= 1 << 18
     }
 
     /// The transpose of the inverse of the rotation, but for its length: 28 fraction bits. Where the pose is
@@ -540,6 +524,15 @@ const fn turned_round(mut rotation: [[I2F14; 3]; 3]) -> [[I2F14; 3]; 3] {
 /// Of vectors of 16 bits: each difference is at most 2³⁰ + 2¹⁵ · (2¹⁵ − 1), which fits.
 const fn cross(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Of vectors of 16 bits, its low 32 bits.
+const fn wrapping_dot(a: [i32; 3], b: [i32; 3]) -> i32 {
+    (a[0] * b[0]).wrapping_add(a[1] * b[1]).wrapping_add(a[2] * b[2])
+}
+
+const fn off(value: i32, from: i32) -> u32 {
+    value.wrapping_sub(from).unsigned_abs()
 }
 
 /// `None` for a number that is none, below 0 or too large.

@@ -19,7 +19,7 @@ pub(super) use cut::MOST_CORNERS;
 use super::color::Coloring;
 use super::transform::{ToClip, focal_log2};
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_high_short, mul_round, normalised};
+use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 
@@ -155,16 +155,16 @@ impl Clip {
     }
 
     /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
-    ///
-    /// The bounds are a sphere in the mesh. Whatever it becomes before the camera, it reaches as far beyond a plane as its
-    /// centre does, and further by [radius times gradient](ToClip::reach) of what measures that distance.
     #[inline(never)]
     pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
-        let center = to_clip.place_all(bounds.center);
-        let (w, viewport) = (i64::from(center[2]), &projection.viewport);
-        let reach = to_clip.reach(bounds.radius, 2, 0, 0);
+        let center @ [.., w] = to_clip.place_all(bounds.center);
+        let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
+        let [before, beyond] = [i64::from(self.near) - i64::from(w), i64::from(w) - i64::from(self.far)];
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
-        if self.near >= self.far || w + reach < i64::from(self.near) || w - reach > i64::from(self.far) {
+        if self.near >= self.far
+            || !to_clip.reaches(before, radius, (2, 0, 0))
+            || !to_clip.reaches(beyond, radius, (2, 0, 0))
+        {
             return false;
         }
         let sides = [
@@ -175,23 +175,22 @@ impl Clip {
         ];
         sides.into_iter().all(|(axis, sign, side)| {
             let slope = side * 16 - projection.center[axis];
-            self.reaches(to_clip, [center[axis], center[2]], bounds.radius, (axis, sign, slope))
+            self.reaches(to_clip, [center[axis], w], radius, (axis, sign, slope))
         })
     }
 
-    /// Whether a mesh's bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that
-    /// lies at a slope of side : focal length, in 1/16 px.
+    /// Whether bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that lies at
+    /// a slope of side : focal length, in 1/16 px.
     #[inline(never)]
     fn reaches(
         &self,
         to_clip: &ToClip,
         [across, w]: [i32; 2],
-        radius: i32,
+        radius: u32,
         (axis, sign, slope): (usize, i64, i32),
     ) -> bool {
-        let across = i64::from(across) << self.scale;
-        let outside = (across - i64::from(slope) * i64::from(self.divisor(w))) * sign;
-        outside <= to_clip.reach(radius, axis, self.scale, if self.flat != 0 { 0 } else { slope })
+        let outside = ((i64::from(across) << self.scale) - wide(self.divisor(w), slope)) * sign;
+        to_clip.reaches(outside, radius, (axis, self.scale, if self.flat != 0 { 0 } else { slope }))
     }
 
     /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.

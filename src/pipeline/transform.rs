@@ -133,22 +133,33 @@ impl ToClip {
         self.unit_bits
     }
 
-    /// How much a coordinate · 2^`log2` − w · `slope` changes at most over `radius` steps of mesh positions, in whichever
-    /// direction: radius times gradient, rounded up, and four clip units for rounding. A `log2` of 0 … 17, a slope within ±2¹⁶.
+    /// Whether a sphere of the mesh, whose centre lies `outside` of a plane, reaches over it, give or take four clip units for
+    /// rounding. Outside is what a coordinate · 2^`log2` − w · `slope` says, in either direction. A `log2` of 0 … 17, a slope
+    /// within ±2¹⁶.
     ///
-    /// The gradient is that of the elements themselves: so this is right for every matrix, one that stretches, shears or mirrors,
-    /// too.
+    /// Whatever becomes of the sphere, it reaches as far as its radius times the gradient of what measures that distance. This
+    /// is the gradient of the elements themselves: so it is right for every matrix, one that stretches, shears or mirrors, too.
     #[inline(never)]
-    pub(super) fn reach(&self, radius: i32, axis: usize, log2: i32, slope: i32) -> i64 {
-        let [.., w] = &self.rows;
-        let across = &self.rows[axis];
+    pub(super) fn reaches(&self, outside: i64, radius: u32, (axis, log2, slope): (usize, i32, i32)) -> bool {
+        if outside <= 0 {
+            return true;
+        }
         // The elements' upper halves: below 2¹³ · 2¹⁷ + 2¹⁶ · 2¹³.
-        let gradient = core::array::from_fn(|i| {
+        let ([.., w], across) = (&self.rows, &self.rows[axis]);
+        let gradient: [u32; 3] = core::array::from_fn(|i| {
             (((across.elements[i] >> 16) << log2) - (w.elements[i] >> 16) * slope).unsigned_abs()
         });
         // Each half is within ½ of its element, all three within √¾.
         let unit = (1 << log2) + slope.unsigned_abs();
-        i64::from(radius) * i64::from(length(gradient) + unit) + i64::from(4 * unit)
+        let outside = outside - i64::from(radius + 4) * i64::from(unit);
+        // All over a power of two so that 14 bits of the gradient are left, and then outside ≤ radius · gradient, squared.
+        let all = gradient.iter().fold(0, |all, side| all | side);
+        let shift = 18_u32.saturating_sub(all.leading_zeros());
+        let squares: u32 = gradient.iter().map(|side| (side >> shift) + 1).map(|side| side * side).sum();
+        let Ok(outside) = u32::try_from((outside >> shift).max(0)) else {
+            return false; // Below 2¹⁶ · 2¹⁵ it would have to be.
+        };
+        u64::from(outside) * u64::from(outside) <= u64::from(radius * radius) * u64::from(squares)
     }
 
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.
@@ -163,26 +174,6 @@ impl ToClip {
         let position = position.map(|at| i32::from(at.to_bits()));
         self.rows.each_ref().map(|row| row.place(position))
     }
-}
-
-/// Just more than √(a² + b² + c²), of numbers below 2³⁰·⁶. The library's root divides.
-fn length(sides: [u32; 3]) -> u32 {
-    let all = sides[0] | sides[1] | sides[2];
-    let mut shift = 0;
-    while all >> shift >= 1 << 14 {
-        shift += 1;
-    }
-    // Rounded up, and 1 more where nothing is to be rounded.
-    let squares: u32 = sides.iter().map(|side| (side >> shift) + 1).map(|side| side * side).sum();
-    let (mut root, mut bit) = (0, 1 << ((31 - squares.leading_zeros()) / 2));
-    while bit > 0 {
-        let next = root | bit;
-        if next * next <= squares {
-            root = next;
-        }
-        bit >>= 1;
-    }
-    (root + 1) << shift
 }
 
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {

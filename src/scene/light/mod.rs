@@ -5,7 +5,7 @@
 //! normal is ever turned.
 //!
 //! That is right as long as the pose keeps angles. A pose that stretches or shears the mesh turns normals otherwise than the
-//! surface: there lights stay in the axes of the world, and each normal and place that is lit is brought to them ([`stretch`]).
+//! surface: there each normal and place that is lit is brought to where it stands ([`stretch`]).
 
 mod normal;
 mod stretch;
@@ -16,6 +16,7 @@ use crate::num::{I2F14, I4F12, I16F16, U8F8, wide};
 use crate::scene::Vertex;
 use core::{array, fmt, num::NonZeroU16};
 use normal::{Direction, across_face, magnitude64};
+use stretch::Stretch;
 
 pub use normal::Normal;
 
@@ -127,14 +128,13 @@ impl<'a> Lights<'a> {
     #[must_use]
     #[inline(never)]
     pub fn in_mesh_space<'p>(&self, pose: &'p Pose) -> Lighting<'p> {
-        const UNTURNED: [[I2F14; 3]; 3] = Pose::IDENTITY.rotation;
-        let ([scale, ..], ambient) = (pose.scale, self.ambient);
-        let (axes, unit, stretched) = if pose.keeps_angles() {
-            (&pose.rotation, (scale.to_bits().max(1), 0), None)
-        } else {
-            (&UNTURNED, (1 << 22, stretch::unit_log2(pose)), Some(pose))
+        let ambient = self.ambient;
+        let mut lighting =
+            Lighting { lights: [Local::NONE; MAX], count: 0, ambient, stretch: Stretch::of(pose) };
+        let (axes, unit) = match &lighting.stretch {
+            None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
+            Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
         };
-        let mut lighting = Lighting { lights: [Local::NONE; MAX], count: 0, ambient, stretched };
         for &Light { source, color } in self.lights {
             let light = match source {
                 Source::Directional(towards) => {
@@ -178,11 +178,11 @@ pub struct Lighting<'p> {
     /// How many of them there are.
     count: u8,
     ambient: [u8; 3],
-    /// The mesh's pose if it does not keep angles: then the lights are in the axes of the world.
-    stretched: Option<&'p Pose>,
+    /// If the pose does not keep angles.
+    stretch: Option<Stretch<'p>>,
 }
 
-const _: () = assert!(size_of::<Lighting<'_>>() <= 80 + 2 * size_of::<usize>());
+const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 2 * size_of::<usize>());
 
 #[derive(Clone, Copy, Debug)]
 enum Local {
@@ -209,16 +209,17 @@ impl Lighting<'_> {
     /// Within ¼ (of 255) of exact from the quantised normal, pose and lights, if the pose's matrix is a rotation or mirrors one, or
     /// at least stretches no direction more than 8 times as much as another (the scales do not count), and no point light is
     /// nearer than 1/1000 of a mesh unit (the longest, if scales differ) and 2⁻¹⁴ of a unit of the world. A rotation worn by
-    /// many turns, but not yet by so much that its normals are treated as stretched, may be another ½ off. Whatever the numbers,
+    /// many turns, but not yet by so much that its normals are treated as stretched: within 1. Whatever the numbers,
     /// within 0 … 255.
     ///
     /// A directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
-    /// point light 20 and a reciprocal square root (400), less if it does not reach; a stretched normal and place 600.
+    /// point light 20 and a reciprocal square root (400), less if it does not reach. Where the pose does not keep angles, a vertex with
+    /// one directional light takes 800 more.
     #[must_use]
     pub fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
-        let normal = match self.stretched {
+        let normal = match &self.stretch {
             None => normal,
-            Some(pose) => stretch::normal(pose, normal),
+            Some(stretch) => stretch.normal(normal),
         };
         self.arriving(position, normal, two_sided)
     }
@@ -226,11 +227,6 @@ impl Lighting<'_> {
     /// As [`Lighting::at`], with a normal along the axes that the lights are in.
     #[inline(never)]
     fn arriving(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
-        // 26 fraction bits.
-        let place = match self.stretched {
-            None => position.map(|at| i32::from(at.to_bits()) << 14),
-            Some(pose) => stretch::place(pose, position),
-        };
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in self.lights() {
             let (cosine, color) = match light {
@@ -240,7 +236,9 @@ impl Lighting<'_> {
                     // 127/128: 16513 to 16384.
                     (cosine - (cosine >> 7), color)
                 }
-                Local::Point(light) => (light.at(&place, normal, two_sided), &light.color),
+                Local::Point(light) => {
+                    (light.at(self.stretch.as_ref(), position, normal, two_sided), &light.color)
+                }
             };
             for (sum, &channel) in sum.iter_mut().zip(color) {
                 // Four times 3.1 · 255 at most, for numbers that are no unit vectors.
@@ -254,7 +252,9 @@ impl Lighting<'_> {
     #[inline(always)]
     pub(crate) fn at_vertex(&self, vertex: &Vertex, two_sided: bool, to: &mut [U8F8; 3]) {
         // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
-        if let ([Local::Directional { towards, color }], None) = (self.lights(), self.stretched) {
+        if let Self { count: 1, lights: [Local::Directional { towards, color }, ..], stretch: None, .. } =
+            self
+        {
             let [x, y, z] = vertex.normal.map(i32::from);
             let [to_x, to_y, to_z] = towards.map(i32::from);
             // 127 · 16513 is 16384 in 14 fraction bits.
@@ -277,9 +277,9 @@ impl Lighting<'_> {
             I4F12::from_bits(((sum * 21845) >> 16) as i16)
         });
         let across = across_face(corners);
-        let normal = match self.stretched {
+        let normal = match &self.stretch {
             None => Normal::along(across),
-            Some(pose) => stretch::across(pose, across),
+            Some(stretch) => stretch.face_normal(across),
         };
         self.arriving(middle, normal, two_sided)
     }
@@ -359,9 +359,20 @@ impl LocalPoint {
         Self { position, unit_bits: unit_bits as i8, inverse, shift: shift as i16, color }
     }
 
-    /// The cosine that counts times the attenuation, 14 fraction bits, at a place within ±2²⁹·⁶.
+    /// The cosine that counts times the attenuation, 14 fraction bits.
     #[inline(never)]
-    fn at(&self, place: &[i32; 3], normal: Normal, two_sided: bool) -> u32 {
+    fn at(
+        &self,
+        stretch: Option<&Stretch<'_>>,
+        position: [I4F12; 3],
+        normal: Normal,
+        two_sided: bool,
+    ) -> u32 {
+        // 26 fraction bits, within ±2²⁹·⁶.
+        let place = match stretch {
+            None => position.map(|at| i32::from(at.to_bits()) << 14),
+            Some(stretch) => stretch.place(position),
+        };
         let coarser = (26 - i32::from(self.unit_bits)).min(31);
         let offset: [i32; 3] = array::from_fn(|i| self.position[i] - (place[i] >> coarser));
         let Some(direction) = Direction::of(offset) else { return 0 };

@@ -97,7 +97,7 @@ impl Direction {
     ///
     /// A straight line and three steps of Newton's y·(3 − m·y²)/2, whose errors are 0.13, 0.026, 0.001,
     /// 2·10⁻⁶: on Armv6-M a tenth of what an integer square root and a reciprocal cost.
-    #[inline]
+    #[inline(never)]
     pub(super) fn inverse_length(&self) -> (u32, u32) {
         // m = 1 … 4 in 14 fraction bits.
         let (m, shift) =

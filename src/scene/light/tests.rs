@@ -348,7 +348,10 @@ fn worst_at_faces_of(name: &str, bound: f64, pose: fn(&mut Random) -> Pose) {
         let two_sided = random.bits() & 1 == 0;
         let exact = exact(&lights, &pose, middle, normal, two_sided);
         let across = across_face(corners);
-        let normal = if pose.keeps_angles() { Normal::along(across) } else { stretch::across(&pose, across) };
+        let normal = match &ours.stretch {
+            None => Normal::along(across),
+            Some(stretch) => stretch.face_normal(across),
+        };
         (ours.arriving(middle, normal, two_sided), exact)
     });
 }
