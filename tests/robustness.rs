@@ -345,11 +345,14 @@ fn turned() -> BoxedStrategy<Pose> {
 }
 
 fn wild_pose() -> BoxedStrategy<Pose> {
-    let scale = prop_oneof![
-        2 => number().prop_map(|scale| Pose::IDENTITY.try_scaled_lit(scale).map_or(U10F22::MAX, |pose| pose.scale)),
-        1 => any::<u32>().prop_map(U10F22::from_bits),
-        2 => Just(U10F22::ONE),
-    ];
+    let scale = || {
+        prop_oneof![
+            2 => number().prop_map(|scale| Pose::IDENTITY.try_scaled_lit(scale).map_or(U10F22::MAX, |pose| pose.scale[0])),
+            1 => any::<u32>().prop_map(U10F22::from_bits),
+            2 => Just(U10F22::ONE),
+        ]
+    };
+    let scale = prop_oneof![2 => scale().prop_map(|scale| [scale; 3]), 1 => [scale(), scale(), scale()]];
     let wild = any::<[[i16; 3]; 3]>().prop_map(|rows| rows.map(|row| row.map(I2F14::from_bits)));
     let rotation = prop_oneof![3 => turned().prop_map(|pose| pose.rotation), 1 => wild];
     (rotation, scale, vec3())
@@ -633,12 +636,15 @@ fn pose_of_any_size() -> BoxedStrategy<Pose> {
         2 => matrix,
         1 => Just([[I2F14::ZERO; 3]; 3]),
     ];
-    let scale = prop_oneof![
-        4 => Just(U10F22::ONE),
-        2 => of_any_size(i32::MAX).prop_map(|bits| U10F22::from_bits(bits.unsigned_abs())),
-        1 => Just(U10F22::MAX),
-        1 => any::<u32>().prop_map(U10F22::from_bits),
-    ];
+    let one = || {
+        prop_oneof![
+            4 => Just(U10F22::ONE),
+            2 => of_any_size(i32::MAX).prop_map(|bits| U10F22::from_bits(bits.unsigned_abs())),
+            1 => Just(U10F22::MAX),
+            1 => any::<u32>().prop_map(U10F22::from_bits),
+        ]
+    };
+    let scale = prop_oneof![3 => one().prop_map(|scale| [scale; 3]), 1 => [one(), one(), one()]];
     let before =
         of_any_size(8 << 16).prop_map(|z| Vec3::new(I16F16::ZERO, I16F16::ZERO, I16F16::from_bits(-z.abs())));
     let translation = prop_oneof![1 => vec3_of_any_size(), 3 => before];

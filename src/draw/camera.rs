@@ -40,7 +40,11 @@ impl Camera {
     /// px, and nearer than ¼ of a unit (of the mesh or of the world, whichever is longer) by ¼/w of that as much, but not by more than
     /// 1/128 px, up to the near plane: for focal lengths of up to 1024 pixels and scales of up to 100, at any distance from the
     /// world's origin. At the largest scale it may be 1/28 px there. So it is with the corners at which planes cut a triangle; and
-    /// none that is seen is left out, at any scale.
+    /// none that is seen is left out, at any scale. Where the scales of
+    /// the mesh's axes differ, all vertices are placed as exactly as if all axes had the largest.
+    ///
+    /// `pose` may stretch, shear and [mirror](Pose::is_mirrored) the mesh. Fronts stay fronts, and light falls on the
+    /// surface as it lies in the world: see [`Pose`].
     ///
     /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
     /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye,

@@ -26,6 +26,7 @@ pub(crate) fn draw<F, D, S>(
     S: Shader<F>,
 {
     stats.count(|stats| &mut stats.meshes);
+    let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
     let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
@@ -42,8 +43,7 @@ pub(crate) fn draw<F, D, S>(
         &Coloring::OWN
     };
     let light_face = if S::LIT && coloring.is_faceted() { Some(Assembler::light_face as _) } else { None };
-    let assembler =
-        Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring, cull: shader.cull(), light_face };
+    let assembler = Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring, cull, light_face };
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
     let mut cache = VertexCache::ZERO;
     cache.forget();
@@ -54,6 +54,6 @@ pub(crate) fn draw<F, D, S>(
 
 /// Not inlined: what it takes is not on the stack while pixels are drawn.
 #[inline(never)]
-fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
+fn coloring<'p, F: PixelFormat, S: Shader<F>>(shader: &S, pose: &'p Pose) -> Coloring<'p> {
     shader.coloring(pose)
 }

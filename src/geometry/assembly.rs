@@ -98,7 +98,7 @@ pub(crate) struct Assembler<'a> {
     pub(crate) mesh: &'a Mesh<'a>,
     pub(crate) to_clip: &'a ToClip,
     pub(crate) clip: &'a Clip,
-    pub(crate) coloring: &'a Coloring,
+    pub(crate) coloring: &'a Coloring<'a>,
     pub(crate) cull: Cull,
     /// [`Assembler::light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
     /// programs without lights.

@@ -122,7 +122,7 @@ impl Clip {
     pub(crate) fn cut(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
     ) -> usize {
@@ -151,7 +151,7 @@ impl Clip {
     fn start(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         vertex: &Vertex,
         polygon: &mut Polygon<'_>,
         i: usize,

@@ -11,6 +11,9 @@ use super::screen::ScreenVertex;
 
 /// Which triangles are culled, that is, not drawn because of the way they face. Front faces run counter-clockwise on the screen.
 /// Triangles without area are always culled.
+///
+/// Of a mesh that is seen in a mirror (its pose or the camera's [is mirrored](crate::Pose::is_mirrored), but not both) fronts are
+/// those that run clockwise on the screen: what is outside stays outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cull {
     /// Back faces: triangles that run clockwise on the screen.
@@ -23,6 +26,16 @@ pub enum Cull {
 }
 
 impl Cull {
+    /// What to leave out of a mesh of which a mirror image may be seen, so that its fronts are clockwise on the screen.
+    #[inline]
+    pub(crate) fn of_mesh(self, is_mirrored: bool) -> Self {
+        match self {
+            Self::Back if is_mirrored => Self::Front,
+            Self::Front if is_mirrored => Self::Back,
+            _ => self,
+        }
+    }
+
     /// Whether a triangle of this [`area`] is culled.
     #[inline]
     pub(crate) fn leaves_out(self, area: i32) -> bool {

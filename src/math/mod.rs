@@ -7,6 +7,7 @@ mod turn;
 mod unit;
 mod vec;
 
+pub(crate) use pose::dot;
 pub use pose::{Pose, ScaleError};
 pub use quaternion::Quaternion;
 pub use turn::Turn;

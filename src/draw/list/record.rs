@@ -27,17 +27,18 @@ pub(crate) enum Full {
 }
 
 /// What a shader wants of the vertices and triangles.
-pub(crate) struct Style {
+pub(crate) struct Style<'p> {
     cull: Cull,
     pub(crate) inputs: Inputs,
-    coloring: Coloring,
+    coloring: Coloring<'p>,
 }
 
-impl Style {
+impl<'p> Style<'p> {
     /// Not inlined, so that its stack frame is gone while a mesh is recorded.
     #[inline(never)]
-    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Self {
-        Self { cull: shader.cull(), inputs: shader.inputs(), coloring: shader.coloring(pose) }
+    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, camera: &Pose, pose: &'p Pose) -> Self {
+        let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
+        Self { cull, inputs: shader.inputs(), coloring: shader.coloring(pose) }
     }
 
     fn has_color(&self) -> bool {
@@ -55,7 +56,7 @@ struct Recorder<'l, 'm> {
     mesh: &'l Mesh<'m>,
     to_clip: ToClip,
     clip: Clip,
-    style: &'l Style,
+    style: &'l Style<'l>,
     window: Window,
     /// What is added to a vertex's index, wrapping, to get its slot.
     to_slot: usize,
@@ -75,7 +76,7 @@ pub(crate) fn record(
     mesh: &Mesh<'_>,
     [camera, pose]: [&Pose; 2],
     projection: &Projection,
-    style: &Style,
+    style: &Style<'_>,
     stats: &mut impl Count,
 ) -> Result<bool, Full> {
     stats.count(|stats| &mut stats.meshes);

@@ -2,6 +2,7 @@
 
 mod lights;
 mod normal;
+mod stretch;
 
 pub use lights::{Light, Lighting, Lights, LightsError};
 pub use normal::Normal;

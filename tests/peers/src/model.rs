@@ -93,10 +93,10 @@ fn normalized(vector: [f32; 3]) -> [f32; 3] {
 }
 
 fn rows(pose: &Pose) -> [[f32; 4]; 3] {
-    let scale: f32 = pose.scale.to_num();
+    let scale = pose.scale.map(|scale| scale.to_num::<f32>());
     let translation = floats(pose.translation);
     [0, 1, 2].map(|row| {
-        let [x, y, z] = pose.rotation[row].map(|element| element.to_num::<f32>() * scale);
+        let [x, y, z] = [0, 1, 2].map(|axis| pose.rotation[row][axis].to_num::<f32>() * scale[axis]);
         [x, y, z, translation[row]]
     })
 }
