@@ -4,6 +4,16 @@ use super::setup::Plane;
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_17, wide};
 
+/// The largest unit of packed texture coordinates, of a texture with a side of 256 texels: 1/256 texel (I16F16).
+///
+/// By so much a [straight run](super::fill::PackedLine) may be behind the coordinates that it is drawn from.
+pub(super) const PACKED_UNIT: u32 = 1 << 8;
+
+/// How far from the ends of their range bent texture coordinates stay, 1/51 texel: in a packed run v is off by one unit where it
+/// begins and one where u repeats, which is after two pixels at the soonest. That is 5 of 2⁸ in the 8 pixels of a large texture,
+/// or 13 of 2⁶ in 24.
+pub(super) const BENT_MARGIN: u32 = 5 << 8;
+
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
@@ -14,7 +24,8 @@ pub(super) struct Attribute {
     pub(super) bend: [i32; 3],
     /// 1 … 31.
     pub(super) shift: i32,
-    /// The range of u at the corners, I16F16: the least, how much less than u₀ that is, and how much more there may be.
+    /// What u may be, I16F16: the least, how much more than u₀ that is, and how much more than the least there may be. It is the
+    /// range at the corners, of a texture coordinate [without its end](Attribute::keep_inside).
     pub(super) least: i32,
     pub(super) low: i32,
     pub(super) range: u32,
@@ -23,6 +34,30 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
+    /// Moves a straight texture coordinate's plane in the direction of the change that decides of which texel a whole coordinate is:
+    /// by the plane's error, of which `lean` has that direction too, and by a unit of packed coordinates.
+    ///
+    /// So a coordinate that is whole at a pixel's centre is never taken for the texel on the wrong side.
+    #[inline]
+    pub(super) fn lean(&mut self, lean: i32, unit: u32) {
+        let unit = lean.signum() * (unit as i32 + 1);
+        self.plane.origin = self.plane.origin.wrapping_add_signed(lean + unit);
+    }
+
+    /// Makes a texture coordinate's range end below the corners' greatest value, and a `margin` further inside on both sides, as
+    /// far as there is room. One that is the same at all corners stays what it is.
+    #[inline]
+    pub(super) fn keep_inside(&mut self, margin: u32, is_straight: bool) {
+        let open = self.range.saturating_sub(1);
+        let margin = margin.min(open >> 1);
+        self.range = open - 2 * margin;
+        self.least = self.least.wrapping_add_unsigned(margin);
+        self.low = self.low.wrapping_add_unsigned(margin);
+        if is_straight {
+            self.plane.origin = self.plane.origin.wrapping_sub(margin);
+        }
+    }
+
     /// What a straight triangle's plane begins with at corner 0.
     #[inline]
     pub(super) fn origin(&self) -> u32 {
@@ -75,7 +110,14 @@ impl Attribute {
 
     /// Where q is the same all along: as [`Attribute::along`].
     #[inline]
-    pub(super) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32, steps: i32) -> (i32, i32) {
+    pub(super) fn level(
+        &self,
+        value: i32,
+        step: i32,
+        reciprocal: u32,
+        zeros: u32,
+        steps: i32,
+    ) -> (i32, i32, i32) {
         let product = mul_17(step, reciprocal);
         let down = self.shift - zeros as i32;
         let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
@@ -104,39 +146,43 @@ impl Attribute {
         self.least.wrapping_add_unsigned(above)
     }
 
-    /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
-    /// outside the corners' range, even where rounding takes the plane there.
+    /// Of a straight triangle, from its plane's value and step: the attribute in I16F16, its step, and along how many of `steps`
+    /// steps it goes so. Never outside its range, even where rounding takes the plane there.
     #[inline]
-    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32, i32) {
+        let (at, step, steps) = self.unscaled((value, step), steps);
+        (at << self.scale_log2, step << self.scale_log2, steps)
+    }
+
+    /// As [`Attribute::along`], without `scale_log2`.
+    #[inline]
+    pub(super) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32, i32) {
         let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
         if first <= self.range && last <= self.range {
-            return (self.least.wrapping_add_unsigned(first) << self.scale_log2, step << self.scale_log2);
+            return (self.least.wrapping_add_unsigned(first), step, steps);
         }
-        self.along_border(first as i32, last as i32, steps)
+        self.at_border(first as i32, step, steps)
     }
 
+    /// Likewise, where the first or the last value is outside: up to the border at full step, and beyond it along the border. So
+    /// what lies inside is as exact as elsewhere.
     #[cold]
     #[inline(never)]
-    fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let (at, step) = self.unscaled_border(first, last, steps);
-        (at << self.scale_log2, step << self.scale_log2)
-    }
-
-    /// As [`Attribute::along`], without `scale_log2`. Calling it from there costs small triangles 2 % on a Cortex-M0+.
-    #[inline]
-    pub(super) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
-        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
-        if first <= self.range && last <= self.range {
-            return (self.least.wrapping_add_unsigned(first), step);
+    fn at_border(&self, first: i32, step: i32, steps: i32) -> (i32, i32, i32) {
+        let inside = first.clamp(0, self.range as i32);
+        let at = self.least + inside;
+        if inside != first {
+            let comes_back = step != 0 && (first < 0) == (step > 0);
+            return (at, 0, if comes_back { 0 } else { steps });
         }
-        self.unscaled_border(first as i32, last as i32, steps)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
-        (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
+        let mut count = 0;
+        for bit in (0..u16::BITS).rev() {
+            let further = count + (1 << bit);
+            if further <= steps && (first.wrapping_add(step.wrapping_mul(further))) as u32 <= self.range {
+                count = further;
+            }
+        }
+        (at, step, count)
     }
 }
 
@@ -151,26 +197,10 @@ static INVERSES: [i32; 32] = {
     inverses
 };
 
-/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
-#[inline]
-fn inverse(steps: usize) -> i32 {
-    INVERSES.get(steps).copied().unwrap_or_else(|| {
-        let reciprocal = Reciprocal::coarse(steps as u32);
-        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
-    })
-}
-
-/// 1/`steps` of fewer than 32 with 16 fraction bits, likewise.
+/// 1/`steps` of fewer than 32 with 16 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
 #[inline]
 pub(super) fn short_inverse(steps: i32) -> u32 {
     INVERSES[steps as usize & 31] as u32 >> 15
-}
-
-/// `rise` in as many steps as [`inverse`] was asked for, cut towards zero.
-#[inline]
-fn step_of(rise: i32, inverse: i32) -> i32 {
-    let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
-    if rise < 0 { -size } else { size }
 }
 
 /// Of a product rounded down: one more if it is negative.

@@ -4,7 +4,9 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
+use super::fill::{
+    Fill, PackedLine, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units,
+};
 use super::patch::Row;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
@@ -184,27 +186,23 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         Self { texture, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
     }
 
-    /// A straight run from a place of u and v, and of light, with the step of each, in the units of bent runs.
+    /// A straight run from a place of packed coordinates, and of light, with the step of each.
     #[inline]
     fn run<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        [at, step]: [[i32; 2]; 2],
+        [mut packed, step]: [u32; 2],
         [mut light, light_step]: [C; 2],
     ) where
         C: Channels<M>,
     {
-        if !self.is_packed {
-            return self.run_unpacked(pixels, [at, step], [light, light_step]);
-        }
-        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
         }
     }
 
-    /// As [`LitTexels::run`] of a texture that is not packable.
+    /// As [`LitTexels::run`] of a texture that is not packable, from u and v.
     #[inline(never)]
     fn run_unpacked<const M: usize>(
         &self,
@@ -286,11 +284,10 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
                 |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
             );
         }
-        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let first = packed_from([u >> a, v >> b], u_step);
+        let line = PackedLine::new(self.texture, [u_step, v_step], row.scale_log2(0));
+        let first = line.first([u, v], row.steps());
         let plus = |light: C| light.plus(light_step);
-        row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {
+        row.draw_texels(self.texture, [first, line.packed], light, plus, |texel, light| {
             lit::<F>(texel, light.rgb())
         });
     }
@@ -304,13 +301,17 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     ) where
         C: Channels<M>,
     {
-        let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
-        let unit_step = [shifted(step[0], a), shifted(step[1], b)];
+        let line = PackedLine::new(self.texture, step, 0);
         let packed_light_step = C::step(light_step);
         let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
-            let packed_light = C::place(light);
-            self.run(block, [[at[0] >> a, at[1] >> b], unit_step], [packed_light, packed_light_step]);
+            let light_line = [C::place(light), packed_light_step];
+            if self.is_packed {
+                let first = line.first(at, block.len() as i32 - 1);
+                self.run(block, [first, line.packed], light_line);
+            } else {
+                self.run_unpacked(block, [at, step], light_line);
+            }
             at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
             for (light, step) in light.iter_mut().zip(light_step) {
                 *light = light.wrapping_add(step << log2);

@@ -121,8 +121,8 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
 /// Cortex-M0+ (13 if the run is bent) where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and
 /// whatever has as many.
 ///
-/// A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So runs are so short, before they
-/// start anew from 32 bits, that all of that is 1/16 texel at most.
+/// A carry from u moves v by its last bit, and steps have no more bits than places. So runs are so short, before they start anew
+/// from 32 bits, that all of that is 1/16 texel at most. A straight one ends where it should, see [`PackedLine`].
 pub(crate) struct Texels<'a, F> {
     texture: &'a Texture<'a>,
     is_packed: bool,
@@ -187,13 +187,13 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         [u_step, v_step]: [i32; 2],
         run: impl Fn(&mut [F::Word], u32, u32),
     ) {
-        let [a, b] = self.texture.log2();
         // After 64 pixels a truncated step is off by 1/16 texel of 64.
         let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let line = PackedLine::new(self.texture, [u_step, v_step], 0);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
-            run(block, packed_from([u >> a, v >> b], u_step), step);
+            let first = line.first([u, v], block.len() as i32 - 1);
+            run(block, first, line.packed);
             if rest.is_empty() {
                 return;
             }
@@ -274,10 +274,9 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
-        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let first = packed_from([u >> a, v >> b], u_step);
-        row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
+        let line = PackedLine::new(self.texture, [u_step, v_step], row.scale_log2(0));
+        let first = line.first([u, v], row.steps());
+        row.draw_texels(self.texture, [first, line.packed], (), |()| (), |texel, ()| F::rgb565(texel));
     }
 
     #[inline]
@@ -323,6 +322,66 @@ pub(super) fn uv_in_units(
     if is_packed { value >> (texture.log2()[i].wrapping_sub(scale_log2) & 31) } else { value << scale_log2 }
 }
 
+/// A straight run of packed coordinates: its step, and what finds where it begins.
+///
+/// Each coordinate is drawn from its step cut to the last bit that there is room for, and ends where it should: so between both ends
+/// it is never behind the coordinate that it stands for, and at most as far ahead as what was cut off, pixel by pixel, comes to. Both
+/// ends lie within the range of the corners, and so does all between.
+///
+/// u is exactly so. v is moved by the carries of u:
+///
+/// ```text
+///   word = v·2¹⁶ + u,   a step of it = v′·2¹⁶ + u′,   v′ and u′ being the steps in units of the halves' last bits
+/// ```
+///
+/// As one number the word changes by the same at every pixel, whatever is carried. So its step is made no longer than v′·2¹⁶ as one
+/// number, by less than 2¹⁶, with u′ in the lower half. At a pixel the word is then v·2¹⁶ there, as if drawn from the end, or
+/// ahead of it, give or take the lower half: v is right or ahead, or behind by less than a unit. (Straight coordinates
+/// [lean](super::attribute::Attribute::lean) by a unit, others stay [that far inside](super::attribute::Attribute::keep_inside)
+/// their range.)
+///
+/// Where v′ is less than a unit, that would carry v back beyond its end; there v does not change at all and is in the
+/// middle of the texel that it ends at, which it is at most 64 units ahead of. Carries of u, 32 at most, do not leave that texel
+/// then, which is 2⁸ units or more high.
+#[derive(Clone, Copy)]
+pub(super) struct PackedLine {
+    /// Log₂ of the unit of u, and of v, in units of the coordinates.
+    log2: [u32; 2],
+    step: [i32; 2],
+    /// The step of the word.
+    pub(super) packed: u32,
+    /// What of v is taken from the coordinate, and what is put in the place of the rest.
+    mask: u32,
+    middle: u32,
+}
+
+impl PackedLine {
+    /// With a step of u and v (I16F16) before both are multiplied by 2^`scale_log2`.
+    #[inline(always)]
+    pub(super) fn new(texture: &Texture<'_>, step: [i32; 2], scale_log2: u32) -> Self {
+        let [a, b] = texture.log2().map(|log2| log2.wrapping_sub(scale_log2) & 31);
+        let u = shifted(step[0], a) as u32;
+        if step[1].unsigned_abs() >> b == 0 {
+            let half = 1_u32 << (31 - (texture.log2()[1] & 31));
+            let packed = u as i16 as u32;
+            return Self { log2: [a, b], step, packed, mask: (half << 1).wrapping_neg(), middle: half };
+        }
+        // Rounded towards zero.
+        let up = (step[1] >> 31) as u32 >> 16;
+        let v = ((step[1] as u32) << ((16 - b) & 31)).wrapping_sub(u).wrapping_add(up);
+        let packed = (v & 0xffff_0000).wrapping_add(u);
+        Self { log2: [a, b], step, packed, mask: 0xffff_0000, middle: 0 }
+    }
+
+    /// The word at the first pixel, of so many steps from u and v (I16F16) on.
+    #[inline(always)]
+    pub(super) fn first(&self, at: [i32; 2], steps: i32) -> u32 {
+        let end = |i: usize| (at[i].wrapping_add(self.step[i].wrapping_mul(steps)) >> self.log2[i]) as u32;
+        let last = (end(0) & 0xffff) | ((end(1) << 16) & self.mask) | self.middle;
+        last.wrapping_sub(self.packed.wrapping_mul(steps as u32))
+    }
+}
+
 /// The place of a run, whose first step of u is negative or not.
 #[inline]
 pub(super) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
@@ -330,10 +389,10 @@ pub(super) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
     ((v as u32) << 16 | (u as u32 & 0xffff)).wrapping_add((u_step as u32 >> 31) << 16)
 }
 
-/// A difference: u may be negative, and then borrows from v.
+/// A difference: u may be negative, and then borrows from v. Whole turns of u are left out, which would be carried into v.
 #[inline]
 pub(super) fn packed_step([u, v]: [i32; 2]) -> u32 {
-    ((v as u32) << 16).wrapping_add(u as u32)
+    ((v as u32) << 16).wrapping_add(u as i16 as u32)
 }
 
 /// A step without its last bits, cut towards zero.

@@ -77,7 +77,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         row = row.wrapping_add(x as usize);
         rows.each_simple([x, y], |n, mut m, end| {
             while m < end {
-                let steps = (end - m - 1).min(longest);
+                let mut steps = (end - m - 1).min(longest);
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
@@ -90,7 +90,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    (at[i], step[i]) = attribute.unscaled((value, right), steps);
+                    (at[i], step[i], steps) = attribute.unscaled((value, right), steps);
                 }
                 let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
                 // In two steps: the end of a range is checked more dearly.
@@ -128,6 +128,12 @@ pub struct Row<'a, W, D: DepthFormat> {
 }
 
 impl<W, D: DepthFormat> Row<'_, W, D> {
+    /// How many steps it has.
+    #[inline]
+    pub(super) fn steps(&self) -> i32 {
+        self.pixels.len() as i32 - 1
+    }
+
     /// By how much attribute `i` is to be shifted left.
     #[inline]
     pub(super) fn scale_log2(&self, i: usize) -> u32 {

@@ -34,7 +34,7 @@
 //! evaluated by weights from the exact edge functions, which never cancel; `Exact` mixes attributes at every pixel, by weights
 //! from the exact products of edge functions and q. Both are slower, rare, and out of line.
 
-use super::attribute::Attribute;
+use super::attribute::{Attribute, BENT_MARGIN, PACKED_UNIT};
 use super::clip::ScreenVertex;
 use super::color::is_gray;
 use super::patch::STRAIGHT;
@@ -113,12 +113,24 @@ struct Slopes {
     /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
     of_weights: [[i32; 2]; 2],
     fraction_bits: i32,
+    /// Whether attributes are exactly linear on the screen: then texture coordinates [lean](TriangleSetup::lean).
+    is_exact: bool,
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
     to_center: [i32; 2],
     /// From that pixel to the nearest on the screen.
     to_screen: [i32; 2],
+}
+
+impl Slopes {
+    /// By how much a value that rises so from corner 0 to 1 and 2 changes over one column or row, in units of 2^−`fraction_bits`,
+    /// rounded down: up to 3 too little.
+    #[inline]
+    fn slope(&self, axis: usize, rise: [i32; 2]) -> i32 {
+        let [b, c] = self.of_weights[axis];
+        mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c))
+    }
 }
 
 /// What a shader wants of a triangle.
@@ -136,6 +148,25 @@ pub(super) struct Needs {
 }
 
 impl Needs {
+    /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
+    #[inline]
+    pub(super) fn is_exactly_straight(&self, least: u32, most: u32) -> bool {
+        least == most || matches!(self.straight, Straight::Always)
+    }
+
+    /// How many of the attributes are texture coordinates: they come first.
+    #[inline]
+    pub(super) fn texture_coordinates(&self) -> usize {
+        if matches!(self.inputs, Inputs::Uv | Inputs::UvColor) { 2 } else { 0 }
+    }
+
+    /// A part of a texel (I16F16) as it is before texture coordinates are scaled; nothing where a division at every pixel needs no
+    /// such margin.
+    #[inline]
+    pub(super) fn margin(&self, texels: u32) -> u32 {
+        if self.every_pixel { 0 } else { texels >> self.texture_scale }
+    }
+
     /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
     /// v, then colours, of which there is one in a grey triangle.
     #[inline]
@@ -247,7 +278,7 @@ impl TriangleSetup {
         self.is_small = false;
         let vertices = triangle.vertices;
         self.area = Reciprocal::precise(triangle.area);
-        let slopes = self.slopes(triangle.area);
+        let mut slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
@@ -266,20 +297,69 @@ impl TriangleSetup {
             self.straight = true;
             return;
         }
+        slopes.is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Always => true,
-            Straight::Below(limit) => {
+            Straight::Below(limit) if !slopes.is_exact => {
                 Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
             }
+            _ => true,
         };
         if !self.straight {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
         needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
+            let mut attribute = self.attribute(&slopes, at, scale_log2, &q, mixed);
+            if i < needs.texture_coordinates() {
+                let margin = if slopes.is_exact {
+                    let lean = self.lean(&slopes, &attribute.plane, [at[1] - at[0], at[2] - at[0]]);
+                    attribute.lean(lean, needs.margin(PACKED_UNIT));
+                    0
+                } else {
+                    needs.margin(if self.straight { PACKED_UNIT } else { BENT_MARGIN })
+                };
+                attribute.keep_inside(margin, self.straight);
+            }
+            self.attributes[i] = attribute;
             true
         });
+    }
+
+    /// How a straight coordinate that rises so from corner 0 to 1 and 2 changes infinitesimally right of a pixel's centre, then
+    /// below (see [`direction`]), times the error of its plane, which is against that direction at most so large.
+    ///
+    /// The plane begins at corner 0's pixel, or where the screen does. From there on it is off by what rounding took from a step, at
+    /// every column and row: that is known, and so is where it is worst. Beside that there are three units of a slope (below
+    /// [the head](self)), and 16 units of what lies between the corner and its pixel's centre. A sliver's plane is exact to 4 units
+    /// where a run begins, and its step to half a unit.
+    #[cold]
+    #[inline(never)]
+    fn lean(&self, slopes: &Slopes, plane: &Plane, rise: [i32; 2]) -> i32 {
+        let direction = direction(&edges(&self.corners), rise);
+        let mut error = 24;
+        for axis in 0..2 {
+            let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+            if self.sliver {
+                error += (last - first).min(1023) >> 1;
+                continue;
+            }
+            let bits = slopes.fraction_bits;
+            let uncertain = 3 * (last - first + 1);
+            if bits <= 0 {
+                error += uncertain << (-bits & 31);
+                continue;
+            }
+            // With 12 bits, times at most 2047.
+            let rest = slopes.slope(axis, rise).wrapping_sub(plane.steps[axis] << bits);
+            let rest = direction * if bits > 12 { rest >> (bits - 12) } else { rest << (12 - bits) };
+            // What may be seen of it is not wider and higher than a screen.
+            let first = first.max((last - 1023).min(0));
+            let start = slopes.pixel[axis] + slopes.to_screen[axis];
+            let most = (rest * (first - start)).max(rest * (last.min(1023) - start)).max(0);
+            error += (most >> 12) + (uncertain >> bits) + 2;
+        }
+        direction * error
     }
 
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
@@ -366,6 +446,7 @@ impl TriangleSetup {
             of_weights: edges.map(|edge| edge.map(|e| (wide(e << shift, self.area.mantissa) >> 31) as i32)),
             // (e·2^shift · mantissa / 2³¹) · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
             fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
+            is_exact: false,
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
             to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
@@ -380,8 +461,7 @@ impl TriangleSetup {
         }
         let mut plane = Plane { origin, steps: [0; 2] };
         for axis in 0..2 {
-            let [b, c] = slopes.of_weights[axis];
-            let slope = mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c));
+            let slope = slopes.slope(axis, rise);
             let bits = slopes.fraction_bits;
             let (step, rest) = if bits > 0 {
                 let step = ((slope >> (bits - 1)) + 1) >> 1;
@@ -440,6 +520,13 @@ impl TriangleSetup {
 #[inline]
 pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
     [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
+}
+
+/// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
+/// any point, and infinitely less below that: as in the top-left rule. Exact.
+pub(super) fn direction(edges: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
+    let [right, down] = edges.map(|[b, c]| (wide(rise[0], b) + wide(rise[1], c)).signum() as i32);
+    if right != 0 { right } else { down }
 }
 
 pub(super) fn position(vertex: &ScreenVertex) -> [i32; 2] {

@@ -18,9 +18,9 @@
 //! allowed. [`Patch`](super::Patch) draws a row of it as a straight line between its ends, or several, and may be wrong by as
 //! much again.
 
-use super::attribute::Attribute;
+use super::attribute::{Attribute, PACKED_UNIT};
 use super::patch::STRAIGHT;
-use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
+use super::setup::{ATTRIBUTES, Needs, Oriented, Plane, TriangleSetup, direction, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short_of;
@@ -33,6 +33,8 @@ struct Slopes {
     /// 1/area = `reciprocal` · 2^(`zeros` − 48).
     reciprocal: u32,
     zeros: u32,
+    /// Whether attributes are exactly linear on the screen: then texture coordinates [lean](Slopes::lean).
+    is_exact: bool,
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
@@ -84,6 +86,42 @@ impl Slopes {
     }
 }
 
+impl Slopes {
+    /// Makes texture coordinates lean by their planes' errors, which are at most so large, in units:
+    ///
+    /// - 2⁻¹⁶·⁸ of a step from the reciprocal, at 64 columns and rows: 2⁻¹⁰ of one step to the right and one down;
+    /// - 1 from rounding a step, at every column and row; where a step is shifted up, 2^shift, which is 64 over all columns or rows
+    ///   of a triangle as small as that;
+    /// - 8 from the corner to its pixel's centre, for columns and for rows;
+    /// - where rises have lost bits, 2⁸ for these and 2⁷ for the last bit of their products.
+    #[cold]
+    #[inline(never)]
+    fn lean(
+        &self,
+        triangle: &Oriented<'_>,
+        attributes: &mut [Attribute; ATTRIBUTES],
+        needs: &Needs,
+        unit: u32,
+    ) {
+        let largest = self.edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
+        needs.each_attribute(triangle, true, |i, at, _| {
+            if i >= needs.texture_coordinates() {
+                return false;
+            }
+            let rise = [at[1] - at[0], at[2] - at[0]];
+            let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
+            let of_steps = if size < 1 << 19 { largest >> 3 } else { 128 };
+            let of_bits = if size < 1 << 19 || (rise[0] | rise[1]) & 0xff == 0 { 0 } else { 384 };
+            let attribute = &mut attributes[i];
+            let [right, down] = attribute.plane.steps.map(i32::unsigned_abs);
+            let error = ((right >> 10) + (down >> 10) + of_steps + of_bits + 24) as i32;
+            attribute.lean(direction(&self.edges, rise) * error, unit);
+            attribute.keep_inside(0, true);
+            true
+        });
+    }
+}
+
 impl TriangleSetup {
     /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
     #[inline(never)]
@@ -105,6 +143,7 @@ impl TriangleSetup {
             edges,
             reciprocal,
             zeros,
+            is_exact: needs.is_exactly_straight(least, most),
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
@@ -173,9 +212,18 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        let are_set = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
-        })
+        });
+        let unit = needs.margin(PACKED_UNIT);
+        if slopes.is_exact {
+            slopes.lean(triangle, attributes, needs, unit);
+        } else {
+            for attribute in attributes.iter_mut().take(needs.texture_coordinates()) {
+                attribute.keep_inside(unit, true);
+            }
+        }
+        are_set
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.

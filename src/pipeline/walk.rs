@@ -150,12 +150,24 @@ impl Span<'_> {
         };
         let mut left = pixels.len() as i32 - 1;
         if setup.straight {
-            let (mut at, mut step) = ([0; N], [0; N]);
-            for (i, attribute) in attributes.iter().enumerate() {
-                let plane = setup.at(&attribute.plane, self.x, self.y);
-                (at[i], step[i]) = attribute.along(plane, left);
+            let mut span = *self;
+            loop {
+                let mut steps = pixels.len() as i32 - 1;
+                let (mut at, mut step) = ([0; N], [0; N]);
+                for (i, attribute) in attributes.iter().enumerate() {
+                    let plane = setup.at(&attribute.plane, span.x, span.y);
+                    (at[i], step[i], steps) = attribute.along(plane, steps);
+                }
+                let count = steps as usize + 1;
+                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
+                    return;
+                };
+                fill.run_long(run, at, step);
+                if rest.is_empty() {
+                    return;
+                }
+                (pixels, span) = (rest, span.ahead(count));
             }
-            return fill.run_long(pixels, at, step);
         }
         if Q::EVERY_PIXEL && setup.sliver {
             for (x, pixel) in (self.x..).zip(pixels) {
@@ -173,11 +185,24 @@ impl Span<'_> {
         }
         if walk.is_level(left) {
             let (reciprocal, zeros) = (short(walk.normalised()), walk.zeros);
-            let (mut at, mut step) = ([0; N], [0; N]);
-            for (i, attribute) in attributes.iter().enumerate() {
-                (at[i], step[i]) = attribute.level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
+            loop {
+                let mut steps = pixels.len() as i32 - 1;
+                let (mut at, mut step) = ([0; N], [0; N]);
+                for (i, attribute) in attributes.iter().enumerate() {
+                    let (value, right) = (walk.values[i], walk.steps[i]);
+                    (at[i], step[i], steps) = attribute.level(value, right, reciprocal, zeros, steps);
+                }
+                let count = steps as usize + 1;
+                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
+                    return;
+                };
+                fill.run_long(run, at, step);
+                if rest.is_empty() {
+                    return;
+                }
+                pixels = rest;
+                walk.advance(steps + 1);
             }
-            return fill.run_long(pixels, at, step);
         }
         // Where q changes by half of itself within a pixel, at every pixel.
         let least = walk.least(left);
