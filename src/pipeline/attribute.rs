@@ -25,7 +25,7 @@ pub(super) struct Attribute {
     /// 1 … 31.
     pub(super) shift: i32,
     /// What u may be, I16F16: the least, how much more than u₀ that is, and how much more than the least there may be. It is the
-    /// range at the corners, of a texture coordinate [without its end](Attribute::keep_inside).
+    /// range at the corners; of a texture coordinate it ends below their greatest value, or a little inside on both sides.
     pub(super) least: i32,
     pub(super) low: i32,
     pub(super) range: u32,
@@ -35,27 +35,16 @@ pub(super) struct Attribute {
 
 impl Attribute {
     /// Moves a straight texture coordinate's plane in the direction of the change that decides of which texel a whole coordinate is:
-    /// by the plane's error, of which `lean` has that direction too, and by a unit of packed coordinates.
+    /// by the plane's error, of which `lean` has that direction too, and by a unit of packed coordinates. So a coordinate that is
+    /// whole at a pixel's centre is never taken for the texel on the wrong side.
     ///
-    /// So a coordinate that is whole at a pixel's centre is never taken for the texel on the wrong side.
+    /// And ends its range, which is that of the corners yet, below the greatest value there; one that is the same at all corners stays
+    /// what it is.
     #[inline]
     pub(super) fn lean(&mut self, lean: i32, unit: u32) {
         let unit = lean.signum() * (unit as i32 + 1);
         self.plane.origin = self.plane.origin.wrapping_add_signed(lean + unit);
-    }
-
-    /// Makes a texture coordinate's range end below the corners' greatest value, and a `margin` further inside on both sides, as
-    /// far as there is room. One that is the same at all corners stays what it is.
-    #[inline]
-    pub(super) fn keep_inside(&mut self, margin: u32, is_straight: bool) {
-        let open = self.range.saturating_sub(1);
-        let margin = margin.min(open >> 1);
-        self.range = open - 2 * margin;
-        self.least = self.least.wrapping_add_unsigned(margin);
-        self.low = self.low.wrapping_add_unsigned(margin);
-        if is_straight {
-            self.plane.origin = self.plane.origin.wrapping_sub(margin);
-        }
+        self.range = self.range.saturating_sub(1);
     }
 
     /// What a straight triangle's plane begins with at corner 0.
@@ -64,22 +53,19 @@ impl Attribute {
         0u32.wrapping_sub(self.low as u32)
     }
 
-    /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
+    /// Sets the range from I16F16 values at the corners, but for an `inset` on both sides, as far as there is room for it. Returns by
+    /// how much they rise from corner 0 to 1 and 2.
     #[inline]
-    pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
-        let mut attribute = Self::default();
-        let rise = attribute.set_range(at, scale_log2);
-        (attribute, rise)
-    }
-
-    /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
-    #[inline]
-    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
+    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32, mut inset: u32) -> [i32; 2] {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        self.least = at[0] + low;
-        self.low = low;
-        self.range = high.wrapping_sub(low) as u32;
+        let range = high.wrapping_sub(low) as u32;
+        self.range = range.wrapping_sub(2 * inset);
+        if range < 2 * inset {
+            (self.range, inset) = (0, range >> 1);
+        }
+        self.low = low.wrapping_add_unsigned(inset);
+        self.least = at[0] + self.low;
         self.scale_log2 = scale_log2;
         rise
     }
@@ -108,20 +94,13 @@ impl Attribute {
         if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) }
     }
 
-    /// Where q is the same all along: as [`Attribute::along`].
+    /// Where q is the same all along: what a straight triangle's plane would say, and its step.
     #[inline]
-    pub(super) fn level(
-        &self,
-        value: i32,
-        step: i32,
-        reciprocal: u32,
-        zeros: u32,
-        steps: i32,
-    ) -> (i32, i32, i32) {
+    pub(super) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32) -> (u32, i32) {
         let product = mul_17(step, reciprocal);
         let down = self.shift - zeros as i32;
         let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
-        self.along((self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step), steps)
+        (self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step)
     }
 
     #[cold]
@@ -146,44 +125,39 @@ impl Attribute {
         self.least.wrapping_add_unsigned(above)
     }
 
-    /// Of a straight triangle, from its plane's value and step: the attribute in I16F16, its step, and along how many of `steps`
-    /// steps it goes so. Never outside its range, even where rounding takes the plane there.
+    /// Of a straight run, from its plane's value and step: the attribute at the first and at the last pixel, and whether both are
+    /// within its range; without `scale_log2`.
     #[inline]
-    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32, i32) {
-        let (at, step, steps) = self.unscaled((value, step), steps);
-        (at << self.scale_log2, step << self.scale_log2, steps)
-    }
-
-    /// As [`Attribute::along`], without `scale_log2`.
-    #[inline]
-    pub(super) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32, i32) {
+    pub(super) fn ends(&self, (value, step): (u32, i32), steps: i32) -> ([i32; 2], bool) {
         let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
-        if first <= self.range && last <= self.range {
-            return (self.least.wrapping_add_unsigned(first), step, steps);
-        }
-        self.at_border(first as i32, step, steps)
+        let are_inside = first <= self.range && last <= self.range;
+        ([first, last].map(|above| self.least.wrapping_add_unsigned(above)), are_inside)
     }
+}
 
-    /// Likewise, where the first or the last value is outside: up to the border at full step, and beyond it along the border. So
-    /// what lies inside is as exact as elsewhere.
-    #[cold]
-    #[inline(never)]
-    fn at_border(&self, first: i32, step: i32, steps: i32) -> (i32, i32, i32) {
-        let inside = first.clamp(0, self.range as i32);
-        let at = self.least + inside;
+/// Keeps a straight run within the range of its attributes, some of which leave it by what rounding took them off: where they
+/// are at the first pixel, their steps, and how many steps it makes. Returns how many it may make like that, up to where one of
+/// them crosses the border. From there on that one goes along the border.
+///
+/// So what lies inside is as exact as elsewhere.
+#[cold]
+#[inline(never)]
+pub(super) fn keep_within(attributes: &[Attribute], at: &mut [i32], step: &mut [i32], mut steps: i32) -> i32 {
+    for ((attribute, at), step) in attributes.iter().zip(at).zip(step) {
+        let first = at.wrapping_sub(attribute.least);
+        let inside = first.clamp(0, attribute.range as i32);
         if inside != first {
-            let comes_back = step != 0 && (first < 0) == (step > 0);
-            return (at, 0, if comes_back { 0 } else { steps });
-        }
-        let mut count = 0;
-        for bit in (0..u16::BITS).rev() {
-            let further = count + (1 << bit);
-            if further <= steps && (first.wrapping_add(step.wrapping_mul(further))) as u32 <= self.range {
-                count = further;
+            *at = attribute.least + inside;
+            if *step != 0 && (first < 0) == (*step > 0) {
+                steps = 0;
             }
+            *step = 0;
         }
-        (at, step, count)
+        while steps > 0 && inside.wrapping_add(step.wrapping_mul(steps)) as u32 > attribute.range {
+            steps -= 1;
+        }
     }
+    steps
 }
 
 /// 1/n with 31 fraction bits, rounded down.

@@ -155,7 +155,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [at, _]: [[i32; M]; 2], step: [i32; M]) {
         let step = C::step(step);
         let first = C::place(at);
         row.draw(first, |at| at.plus(step), |at| at.word::<F>());
@@ -269,7 +269,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     fn short<D: DepthFormat, const M: usize>(
         &self,
         row: Row<'_, F::Word, D>,
-        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
+        (ends, step): ([[i32; 2]; 2], [i32; 2]),
         (light, light_step): ([i32; M], [i32; M]),
     ) where
         C: Channels<M>,
@@ -277,19 +277,17 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         let light_step = C::step(light_step);
         let light = C::place(light);
         if !self.is_packed {
-            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
+            let [at, step] = [ends[0], step].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(
                 (at, light),
                 |(at, light)| (plus(at, step), light.plus(light_step)),
                 |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
             );
         }
-        let line = PackedLine::new(self.texture, [u_step, v_step], row.scale_log2(0));
-        let first = line.first([u, v], row.steps());
+        let line = PackedLine::new(self.texture, step, row.scale_log2(0));
+        let words = line.words(self.texture, ends, step[1], row.steps());
         let plus = |light: C| light.plus(light_step);
-        row.draw_texels(self.texture, [first, line.packed], light, plus, |texel, light| {
-            lit::<F>(texel, light.rgb())
-        });
+        row.draw_texels(self.texture, words, light, plus, |texel, light| lit::<F>(texel, light.rgb()));
     }
 
     #[inline]
@@ -307,8 +305,9 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         for block in pixels.chunks_mut(1 << log2) {
             let light_line = [C::place(light), packed_light_step];
             if self.is_packed {
-                let first = line.first(at, block.len() as i32 - 1);
-                self.run(block, [first, line.packed], light_line);
+                let steps = block.len() as i32 - 1;
+                let last = plus(at, step.map(|step| step.wrapping_mul(steps)));
+                self.run(block, line.words(self.texture, [at, last], step[1], steps), light_line);
             } else {
                 self.run_unpacked(block, [at, step], light_line);
             }
@@ -364,10 +363,11 @@ macro_rules! fill_of_lit_texels {
             fn row<D: DepthFormat>(
                 &self,
                 row: Row<'_, F::Word, D>,
-                [u, v, light @ ..]: [i32; $n],
+                [[u, v, light @ ..], [u_last, v_last, ..]]: [[i32; $n]; 2],
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
-                self.short(row, ([u, v], [u_step, v_step]), (light, light_step));
+                let uv = ([[u, v], [u_last, v_last]], [u_step, v_step]);
+                self.short(row, uv, (light, light_step));
             }
 
             #[inline]

@@ -40,10 +40,10 @@ pub trait Fill<const N: usize> {
         STRAIGHT
     }
 
-    /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further, both without the row's
-    /// `scale_log2`.
+    /// A short row of pixels, some of which may be hidden, from the first of two places to the last, each `step` further, all
+    /// without the row's `scale_log2`.
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, [at, _]: [[i32; N]; 2], step: [i32; N]) {
         let [at, step]: [[i32; N]; 2] =
             [at, step].map(|value| core::array::from_fn(|i| value[i] << row.scale_log2(i)));
         row.draw(at, |at| plus(at, step), |at| self.pixel(at));
@@ -192,8 +192,10 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         let line = PackedLine::new(self.texture, [u_step, v_step], 0);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
-            let first = line.first([u, v], block.len() as i32 - 1);
-            run(block, first, line.packed);
+            let steps = block.len() as i32 - 1;
+            let last = plus([u, v], [u_step, v_step].map(|step| step.wrapping_mul(steps)));
+            let [first, step] = line.words(self.texture, [[u, v], last], v_step, steps);
+            run(block, first, step);
             if rest.is_empty() {
                 return;
             }
@@ -269,14 +271,14 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     }
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, ends: [[i32; 2]; 2], step: [i32; 2]) {
         if !self.is_packed {
-            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
+            let [at, step] = [ends[0], step].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
-        let line = PackedLine::new(self.texture, [u_step, v_step], row.scale_log2(0));
-        let first = line.first([u, v], row.steps());
-        row.draw_texels(self.texture, [first, line.packed], (), |()| (), |texel, ()| F::rgb565(texel));
+        let line = PackedLine::new(self.texture, step, row.scale_log2(0));
+        let words = line.words(self.texture, ends, step[1], row.steps());
+        row.draw_texels(self.texture, words, (), |()| (), |texel, ()| F::rgb565(texel));
     }
 
     #[inline]
@@ -322,63 +324,73 @@ pub(super) fn uv_in_units(
     if is_packed { value >> (texture.log2()[i].wrapping_sub(scale_log2) & 31) } else { value << scale_log2 }
 }
 
-/// A straight run of packed coordinates: its step, and what finds where it begins.
+/// A straight run of packed coordinates.
 ///
-/// Each coordinate is drawn from its step cut to the last bit that there is room for, and ends where it should: so between both ends
-/// it is never behind the coordinate that it stands for, and at most as far ahead as what was cut off, pixel by pixel, comes to. Both
-/// ends lie within the range of the corners, and so does all between.
+/// Each coordinate takes steps that are cut to the last bit that there is room for, and **ends** where it should. So between both
+/// ends it is never behind the coordinate that it stands for, and as far ahead as what was cut off comes to from there on. Both ends
+/// lie within the range of the corners, and so does all between.
 ///
-/// u is exactly so. v is moved by the carries of u:
-///
-/// ```text
-///   word = v·2¹⁶ + u,   a step of it = v′·2¹⁶ + u′,   v′ and u′ being the steps in units of the halves' last bits
-/// ```
-///
-/// As one number the word changes by the same at every pixel, whatever is carried. So its step is made no longer than v′·2¹⁶ as one
-/// number, by less than 2¹⁶, with u′ in the lower half. At a pixel the word is then v·2¹⁶ there, as if drawn from the end, or
-/// ahead of it, give or take the lower half: v is right or ahead, or behind by less than a unit. (Straight coordinates
-/// [lean](super::attribute::Attribute::lean) by a unit, others stay [that far inside](super::attribute::Attribute::keep_inside)
-/// their range.)
-///
-/// Where v′ is less than a unit, that would carry v back beyond its end; there v does not change at all and is in the
-/// middle of the texel that it ends at, which it is at most 64 units ahead of. Carries of u, 32 at most, do not leave that texel
-/// then, which is 2⁸ units or more high.
+/// That is so as long as u does not repeat along the run. Where it does, it carries into v: see [`PackedLine::across`].
 #[derive(Clone, Copy)]
 pub(super) struct PackedLine {
-    /// Log₂ of the unit of u, and of v, in units of the coordinates.
+    /// Log₂ of the units of u and v in units of the coordinates.
     log2: [u32; 2],
+    /// Of u and v, in these units, cut towards zero.
     step: [i32; 2],
-    /// The step of the word.
-    pub(super) packed: u32,
-    /// What of v is taken from the coordinate, and what is put in the place of the rest.
-    mask: u32,
-    middle: u32,
 }
 
 impl PackedLine {
     /// With a step of u and v (I16F16) before both are multiplied by 2^`scale_log2`.
     #[inline(always)]
-    pub(super) fn new(texture: &Texture<'_>, step: [i32; 2], scale_log2: u32) -> Self {
+    pub(super) fn new(texture: &Texture<'_>, [u, v]: [i32; 2], scale_log2: u32) -> Self {
         let [a, b] = texture.log2().map(|log2| log2.wrapping_sub(scale_log2) & 31);
-        let u = shifted(step[0], a) as u32;
-        if step[1].unsigned_abs() >> b == 0 {
-            let half = 1_u32 << (31 - (texture.log2()[1] & 31));
-            let packed = u as i16 as u32;
-            return Self { log2: [a, b], step, packed, mask: (half << 1).wrapping_neg(), middle: half };
-        }
-        // Rounded towards zero.
-        let up = (step[1] >> 31) as u32 >> 16;
-        let v = ((step[1] as u32) << ((16 - b) & 31)).wrapping_sub(u).wrapping_add(up);
-        let packed = (v & 0xffff_0000).wrapping_add(u);
-        Self { log2: [a, b], step, packed, mask: 0xffff_0000, middle: 0 }
+        Self { log2: [a, b], step: [shifted(u, a), shifted(v, b)] }
     }
 
-    /// The word at the first pixel, of so many steps from u and v (I16F16) on.
+    /// The word at the first pixel and its step, from u and v (I16F16) at the first pixel and at the last, which is so many steps
+    /// further, and the step of v.
     #[inline(always)]
-    pub(super) fn first(&self, at: [i32; 2], steps: i32) -> u32 {
-        let end = |i: usize| (at[i].wrapping_add(self.step[i].wrapping_mul(steps)) >> self.log2[i]) as u32;
-        let last = (end(0) & 0xffff) | ((end(1) << 16) & self.mask) | self.middle;
-        last.wrapping_sub(self.packed.wrapping_mul(steps as u32))
+    pub(super) fn words(
+        &self,
+        texture: &Texture<'_>,
+        [first, last]: [[i32; 2]; 2],
+        v_step: i32,
+        steps: i32,
+    ) -> [u32; 2] {
+        let ([a, b], [u, v]) = (self.log2, self.step);
+        let (first_u, last_u) = (first[0] >> a, last[0] >> a);
+        let at_end = ((last[1] >> b) as u32) << 16 | (last_u as u32 & 0xffff);
+        if (first_u ^ last_u) >> 16 != 0 {
+            let [_, rows_log2] = texture.log2();
+            return Self::across(at_end, u, (v_step, (16 - b) & 31), [steps as u32, rows_log2]);
+        }
+        let step = ((v as u32) << 16).wrapping_add(u as u32);
+        [at_end.wrapping_sub(step.wrapping_mul(steps as u32)), step]
+    }
+
+    /// Likewise where u repeats along the run, from the word at its end, the step of u in its units, that of v in I16F16 and by how
+    /// much that is to be shifted left to have 16 bits more than v's units.
+    ///
+    /// As one number the word changes by the same at every pixel, whatever is carried. With that step v′·2¹⁶ rounded towards zero, but
+    /// with u′ in the lower half, the word is nowhere behind v·2¹⁶, give or take the lower half: so v is behind by less than a unit.
+    /// (Straight coordinates [lean](super::attribute::Attribute::lean) by a unit for that, and others stay [that far
+    /// inside](super::attribute::Attribute::keep_inside) their range.)
+    ///
+    /// Where v′ is less than a unit, that could carry v back beyond its end. There v does not change at all, and is in the middle of
+    /// the texel that it ends at: it is at most 64 units ahead. Carries of u, 32 at most if whole turns are left out, do not leave
+    /// that texel then, which is 2⁸ units high or more.
+    #[cold]
+    #[inline(never)]
+    fn across(at_end: u32, u: i32, (v, up): (i32, u32), [steps, rows_log2]: [u32; 2]) -> [u32; 2] {
+        let (at_end, step) = if v.unsigned_abs() >> (16 - up) == 0 {
+            let half = 1_u32 << (31 - rows_log2);
+            (at_end & ((half << 1).wrapping_neg() | 0xffff) | half, u as i16 as u32)
+        } else {
+            let towards_zero = (v >> 31) as u32 >> 16;
+            let v = ((v as u32) << up).wrapping_sub(u as u32).wrapping_add(towards_zero);
+            (at_end, (v & 0xffff_0000).wrapping_add(u as u32))
+        };
+        [at_end.wrapping_sub(step.wrapping_mul(steps)), step]
     }
 }
 

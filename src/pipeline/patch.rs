@@ -7,7 +7,8 @@
 //!
 //! What a pixel shows depends on its triangle alone, not on what hides it or where the band begins: rows are shaded whole.
 
-use super::fill::{Each, Fill, sized};
+use super::attribute::keep_within;
+use super::fill::{Each, Fill, plus, sized};
 use super::setup::TriangleSetup;
 use super::shade::{Pixels, Quality, sealed::Sealed};
 use super::span::Rows;
@@ -78,7 +79,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         rows.each_simple([x, y], |n, mut m, end| {
             while m < end {
                 let mut steps = (end - m - 1).min(longest);
-                let (mut at, mut step) = ([0; N], [0; N]);
+                let (mut at, mut last, mut step, mut are_inside) = ([0; N], [0; N], [0; N], true);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
                     if is_bent {
@@ -90,7 +91,15 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    (at[i], step[i], steps) = attribute.unscaled((value, right), steps);
+                    let ([first, end], is_inside) = attribute.ends((value, right), steps);
+                    (at[i], last[i], step[i]) = (first, end, right);
+                    are_inside &= is_inside;
+                }
+                if !are_inside {
+                    let mut within = (at, step);
+                    steps = keep_within(attributes, &mut within.0, &mut within.1, steps);
+                    (at, step) = within;
+                    last = plus(at, step.map(|step| step.wrapping_mul(steps)));
                 }
                 let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
                 // In two steps: the end of a range is checked more dearly.
@@ -102,7 +111,11 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                 };
                 if let (Some(pixels), Some(depth)) = (part(&mut *pixels), depth) {
                     let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
-                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
+                    fill.row(
+                        Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 },
+                        [at, last],
+                        step,
+                    );
                 }
                 m += steps + 1;
             }

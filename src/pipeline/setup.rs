@@ -71,6 +71,9 @@ impl Cull {
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(super) const ATTRIBUTES: usize = 5;
 
+/// Says of an attribute that it is u or v: added to log₂ of their scale.
+pub(super) const TEXEL: u32 = 1 << 8;
+
 /// A triangle ready to be cut into spans: corners clockwise on the screen, the nearest first.
 #[derive(Debug)]
 pub(crate) struct TriangleSetup {
@@ -106,6 +109,24 @@ pub(super) struct Plane {
     pub(super) origin: u32,
     /// One column to the right, one row down; of a sliver, from corner 0 to corners 1 and 2.
     pub(super) steps: [i32; 2],
+}
+
+impl Plane {
+    /// Moves a step to the nearest multiple of 2⁻¹² texels if that is within its error, and returns by how much.
+    ///
+    /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
+    /// coordinates at every pixel.
+    #[inline]
+    pub(super) fn snap(&mut self, axis: usize, pixel: i32, error: u32) -> i32 {
+        let step = self.steps[axis];
+        let change = (step.wrapping_add(8) & !15).wrapping_sub(step);
+        if change.unsigned_abs() > error {
+            return 0;
+        }
+        self.steps[axis] = step.wrapping_add(change);
+        self.origin = self.origin.wrapping_sub(pixel.wrapping_mul(change) as u32);
+        change
+    }
 }
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
@@ -154,21 +175,15 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
-    /// How many of the attributes are texture coordinates: they come first.
-    #[inline]
-    pub(super) fn texture_coordinates(&self) -> usize {
-        if matches!(self.inputs, Inputs::Uv | Inputs::UvColor) { 2 } else { 0 }
-    }
-
-    /// A part of a texel (I16F16) as it is before texture coordinates are scaled; nothing where a division at every pixel needs no
-    /// such margin.
+    /// A part of a texel (I16F16) as it is before texture coordinates are scaled, 1 at least; that where a division at every pixel
+    /// needs no such margin.
     #[inline]
     pub(super) fn margin(&self, texels: u32) -> u32 {
-        if self.every_pixel { 0 } else { texels >> self.texture_scale }
+        if self.every_pixel { 1 } else { texels >> self.texture_scale }
     }
 
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle.
+    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, to which [`TEXEL`] is added for u and
+    /// v, until one returns false: u and v, then colours, of which there is one in a grey triangle.
     #[inline]
     pub(super) fn each_attribute(
         &self,
@@ -193,7 +208,7 @@ impl Needs {
                 1 => vertex.v.to_bits(),
                 _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
             };
-            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
+            set(i - first, vertices.map(at), if i < 2 { self.texture_scale | TEXEL } else { 0 })
         })
     }
 }
@@ -308,17 +323,13 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
+        let margin = needs.margin(if self.straight { PACKED_UNIT } else { BENT_MARGIN });
         needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let mut attribute = self.attribute(&slopes, at, scale_log2, &q, mixed);
-            if i < needs.texture_coordinates() {
-                let margin = if slopes.is_exact {
-                    let lean = self.lean(&slopes, &attribute.plane, [at[1] - at[0], at[2] - at[0]]);
-                    attribute.lean(lean, needs.margin(PACKED_UNIT));
-                    0
-                } else {
-                    needs.margin(if self.straight { PACKED_UNIT } else { BENT_MARGIN })
-                };
-                attribute.keep_inside(margin, self.straight);
+            let inset = if slopes.is_exact || scale_log2 & TEXEL == 0 { 0 } else { margin };
+            let mut attribute = self.attribute(&slopes, at, [scale_log2 & !TEXEL, inset], &q, mixed);
+            if slopes.is_exact && scale_log2 & TEXEL != 0 {
+                let lean = self.lean(&slopes, &attribute.plane, [at[1] - at[0], at[2] - at[0]]);
+                attribute.lean(lean, margin);
             }
             self.attributes[i] = attribute;
             true
@@ -495,11 +506,12 @@ impl TriangleSetup {
         &self,
         slopes: &Slopes,
         at: [i32; 3],
-        scale_log2: u32,
+        [scale_log2, inset]: [u32; 2],
         q: &[u32; 3],
         mixed: bool,
     ) -> Attribute {
-        let (mut attribute, rise) = Attribute::between(at, scale_log2);
+        let mut attribute = Attribute::default();
+        let rise = attribute.set_range(at, scale_log2, inset);
         if self.straight || mixed {
             let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
             attribute.plane = self.plane(slopes, origin, rise);

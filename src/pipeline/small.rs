@@ -20,7 +20,7 @@
 
 use super::attribute::{Attribute, PACKED_UNIT};
 use super::patch::STRAIGHT;
-use super::setup::{ATTRIBUTES, Needs, Oriented, Plane, TriangleSetup, direction, edges};
+use super::setup::{Needs, Oriented, Plane, TEXEL, TriangleSetup, direction, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short_of;
@@ -33,8 +33,10 @@ struct Slopes {
     /// 1/area = `reciprocal` · 2^(`zeros` − 48).
     reciprocal: u32,
     zeros: u32,
-    /// Whether attributes are exactly linear on the screen: then texture coordinates [lean](Slopes::lean).
-    is_exact: bool,
+    /// How far inside their range texture coordinates stay; 0 if they are exactly straight, and [lean](Slopes::lean) instead: by this
+    /// unit and their planes' errors.
+    inset: u32,
+    unit: u32,
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
@@ -53,9 +55,13 @@ impl Slopes {
     /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
     #[inline(never)]
     fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
-        let rise = attribute.set_range(*at, scale_log2);
+        let inset = if scale_log2 == 0 { 0 } else { self.inset };
+        let rise = attribute.set_range(*at, scale_log2 & !TEXEL, inset);
         attribute.plane.origin = attribute.origin();
         self.set(&mut attribute.plane, rise[0], rise[1]);
+        if scale_log2 != 0 && self.inset == 0 {
+            self.lean(attribute, rise);
+        }
         attribute.range < 1 << 27
     }
 
@@ -87,38 +93,30 @@ impl Slopes {
 }
 
 impl Slopes {
-    /// Makes texture coordinates lean by their planes' errors, which are at most so large, in units:
+    /// Makes an exactly straight texture coordinate lean by the error of its plane, which is at most so large, in units:
     ///
     /// - 2⁻¹⁶·⁸ of a step from the reciprocal, at 64 columns and rows: 2⁻¹⁰ of one step to the right and one down;
     /// - 1 from rounding a step, at every column and row; where a step is shifted up, 2^shift, which is 64 over all columns or rows
     ///   of a triangle as small as that;
     /// - 8 from the corner to its pixel's centre, for columns and for rows;
-    /// - where rises have lost bits, 2⁸ for these and 2⁷ for the last bit of their products.
+    /// - where rises have lost bits, 2⁸ for these and 2⁷ for the last bit of their products;
+    /// - what a step is moved by, at every column and row, to [the multiple](Plane::snap) that it may be.
     #[cold]
     #[inline(never)]
-    fn lean(
-        &self,
-        triangle: &Oriented<'_>,
-        attributes: &mut [Attribute; ATTRIBUTES],
-        needs: &Needs,
-        unit: u32,
-    ) {
+    fn lean(&self, attribute: &mut Attribute, rise: [i32; 2]) {
+        let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
         let largest = self.edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
-        needs.each_attribute(triangle, true, |i, at, _| {
-            if i >= needs.texture_coordinates() {
-                return false;
-            }
-            let rise = [at[1] - at[0], at[2] - at[0]];
-            let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
-            let of_steps = if size < 1 << 19 { largest >> 3 } else { 128 };
-            let of_bits = if size < 1 << 19 || (rise[0] | rise[1]) & 0xff == 0 { 0 } else { 384 };
-            let attribute = &mut attributes[i];
-            let [right, down] = attribute.plane.steps.map(i32::unsigned_abs);
-            let error = ((right >> 10) + (down >> 10) + of_steps + of_bits + 24) as i32;
-            attribute.lean(direction(&self.edges, rise) * error, unit);
-            attribute.keep_inside(0, true);
-            true
-        });
+        let mut error = 24 + if size < 1 << 19 { largest >> 3 } else { 128 };
+        if size >= 1 << 19 && (rise[0] | rise[1]) & 0xff != 0 {
+            error += 384;
+        }
+        for axis in 0..2 {
+            let step = attribute.plane.steps[axis];
+            error += step.unsigned_abs() >> 10;
+            let change = attribute.plane.snap(axis, self.pixel[axis], 2 + (step.unsigned_abs() >> 16));
+            error += change.unsigned_abs() * ((largest >> 4) + 2);
+        }
+        attribute.lean(direction(&self.edges, rise) * error as i32, self.unit);
     }
 }
 
@@ -139,11 +137,13 @@ impl TriangleSetup {
             return false;
         }
         let (reciprocal, zeros) = short_of(triangle.area);
+        let unit = needs.margin(PACKED_UNIT);
         let slopes = Slopes {
             edges,
             reciprocal,
             zeros,
-            is_exact: needs.is_exactly_straight(least, most),
+            inset: if needs.is_exactly_straight(least, most) { 0 } else { unit },
+            unit,
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
@@ -202,7 +202,7 @@ impl TriangleSetup {
         needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
             let rise = [b - a, c - a];
             (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
-                && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
+                && bend.is_straight_for(limit, rise, 0x10000 >> (scale_log2 & !TEXEL))
         })
     }
 
@@ -212,18 +212,9 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
-        let are_set = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
-        });
-        let unit = needs.margin(PACKED_UNIT);
-        if slopes.is_exact {
-            slopes.lean(triangle, attributes, needs, unit);
-        } else {
-            for attribute in attributes.iter_mut().take(needs.texture_coordinates()) {
-                attribute.keep_inside(unit, true);
-            }
-        }
-        are_set
+        })
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.

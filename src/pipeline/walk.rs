@@ -16,7 +16,7 @@
 //! pixels where q changes by 1/12 of itself a pixel (a straight line could be 3 long), every 16 where it is 1/33 (5). Floors
 //! seen level and walls seen straight (q′ ≈ 0) are one straight run with one division.
 
-use super::attribute::{Attribute, short_inverse, towards_zero};
+use super::attribute::{Attribute, keep_within, short_inverse, towards_zero};
 use super::fill::Fill;
 use super::shade::Quality;
 use super::span::Span;
@@ -150,24 +150,8 @@ impl Span<'_> {
         };
         let mut left = pixels.len() as i32 - 1;
         if setup.straight {
-            let mut span = *self;
-            loop {
-                let mut steps = pixels.len() as i32 - 1;
-                let (mut at, mut step) = ([0; N], [0; N]);
-                for (i, attribute) in attributes.iter().enumerate() {
-                    let plane = setup.at(&attribute.plane, span.x, span.y);
-                    (at[i], step[i], steps) = attribute.along(plane, steps);
-                }
-                let count = steps as usize + 1;
-                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
-                    return;
-                };
-                fill.run_long(run, at, step);
-                if rest.is_empty() {
-                    return;
-                }
-                (pixels, span) = (rest, span.ahead(count));
-            }
+            let at = |attribute: &Attribute| setup.at(&attribute.plane, self.x, self.y);
+            return straight(attributes, attributes.each_ref().map(at), pixels, fill);
         }
         if Q::EVERY_PIXEL && setup.sliver {
             for (x, pixel) in (self.x..).zip(pixels) {
@@ -185,24 +169,8 @@ impl Span<'_> {
         }
         if walk.is_level(left) {
             let (reciprocal, zeros) = (short(walk.normalised()), walk.zeros);
-            loop {
-                let mut steps = pixels.len() as i32 - 1;
-                let (mut at, mut step) = ([0; N], [0; N]);
-                for (i, attribute) in attributes.iter().enumerate() {
-                    let (value, right) = (walk.values[i], walk.steps[i]);
-                    (at[i], step[i], steps) = attribute.level(value, right, reciprocal, zeros, steps);
-                }
-                let count = steps as usize + 1;
-                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
-                    return;
-                };
-                fill.run_long(run, at, step);
-                if rest.is_empty() {
-                    return;
-                }
-                pixels = rest;
-                walk.advance(steps + 1);
-            }
+            let level = |i: usize| attributes[i].level(walk.values[i], walk.steps[i], reciprocal, zeros);
+            return straight(attributes, core::array::from_fn(level), pixels, fill);
         }
         // Where q changes by half of itself within a pixel, at every pixel.
         let least = walk.least(left);
@@ -246,6 +214,45 @@ impl Span<'_> {
             let by_slope = lengths[(slope.unsigned_abs() >> 7).min(127) as usize];
             length = i32::from(by_slope).min(longest).min(left);
             walk.advance(length);
+        }
+    }
+}
+
+/// Fills pixels along which attributes are straight, from the values of their planes and the steps of these.
+#[inline]
+fn straight<const N: usize, L: Fill<N>>(
+    attributes: &[Attribute; N],
+    mut lines: [(u32, i32); N],
+    mut pixels: &mut [L::Word],
+    fill: &L,
+) {
+    loop {
+        let mut steps = pixels.len() as i32 - 1;
+        let (mut at, mut step, mut are_inside) = ([0; N], [0; N], true);
+        for (i, attribute) in attributes.iter().enumerate() {
+            let ([first, _], is_inside) = attribute.ends(lines[i], steps);
+            (at[i], step[i]) = (first, lines[i].1);
+            are_inside &= is_inside;
+        }
+        if !are_inside {
+            let mut within = (at, step);
+            steps = keep_within(attributes, &mut within.0, &mut within.1, steps);
+            (at, step) = within;
+        }
+        let count = steps as usize + 1;
+        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
+            return;
+        };
+        for (i, attribute) in attributes.iter().enumerate() {
+            (at[i], step[i]) = (at[i] << attribute.scale_log2, step[i] << attribute.scale_log2);
+        }
+        fill.run_long(run, at, step);
+        if rest.is_empty() {
+            return;
+        }
+        pixels = rest;
+        for (value, step) in &mut lines {
+            *value = value.wrapping_add_signed(step.wrapping_mul(count as i32));
         }
     }
 }
