@@ -246,7 +246,8 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
         F::rgb565(self.texture.fetch(u >> 16, v >> 16))
     }
 
-    #[inline]
+    // Not inlined: it needs the registers.
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         if !self.is_packed {
             return self.run_unpacked(pixels, at, step);

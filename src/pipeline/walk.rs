@@ -219,40 +219,52 @@ impl Span<'_> {
 }
 
 /// Fills pixels along which attributes are straight, from the values of their planes and the steps of these.
-#[inline]
+#[inline(always)]
 fn straight<const N: usize, L: Fill<N>>(
+    attributes: &[Attribute; N],
+    lines: [(u32, i32); N],
+    pixels: &mut [L::Word],
+    fill: &L,
+) {
+    let (mut at, mut step, mut are_inside) = ([0; N], [0; N], true);
+    for (i, attribute) in attributes.iter().enumerate() {
+        let ([first, _], is_inside) = attribute.ends(lines[i], pixels.len() as i32 - 1);
+        (at[i], step[i]) = (first << attribute.scale_log2, lines[i].1 << attribute.scale_log2);
+        are_inside &= is_inside;
+    }
+    if are_inside {
+        fill.run_long(pixels, at, step)
+    } else {
+        straight_to_border(attributes, lines, pixels, fill)
+    }
+}
+
+/// As [`straight`], where some attribute leaves its range.
+#[cold]
+#[inline(never)]
+fn straight_to_border<const N: usize, L: Fill<N>>(
     attributes: &[Attribute; N],
     mut lines: [(u32, i32); N],
     mut pixels: &mut [L::Word],
     fill: &L,
 ) {
-    loop {
-        let mut steps = pixels.len() as i32 - 1;
-        let (mut at, mut step, mut are_inside) = ([0; N], [0; N], true);
+    while !pixels.is_empty() {
+        let (mut at, mut step) = ([0; N], [0; N]);
         for (i, attribute) in attributes.iter().enumerate() {
-            let ([first, _], is_inside) = attribute.ends(lines[i], steps);
+            let ([first, _], _) = attribute.ends(lines[i], 0);
             (at[i], step[i]) = (first, lines[i].1);
-            are_inside &= is_inside;
         }
-        if !are_inside {
-            let mut within = (at, step);
-            steps = keep_within(attributes, &mut within.0, &mut within.1, steps);
-            (at, step) = within;
-        }
-        let count = steps as usize + 1;
-        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
-            return;
-        };
+        let count = keep_within(attributes, &mut at, &mut step, pixels.len() as i32 - 1) + 1;
         for (i, attribute) in attributes.iter().enumerate() {
             (at[i], step[i]) = (at[i] << attribute.scale_log2, step[i] << attribute.scale_log2);
         }
-        fill.run_long(run, at, step);
-        if rest.is_empty() {
+        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize) else {
             return;
-        }
+        };
+        fill.run_long(run, at, step);
         pixels = rest;
         for (value, step) in &mut lines {
-            *value = value.wrapping_add_signed(step.wrapping_mul(count as i32));
+            *value = value.wrapping_add_signed(step.wrapping_mul(count));
         }
     }
 }
