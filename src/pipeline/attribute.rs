@@ -4,16 +4,6 @@ use super::setup::Plane;
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_17, wide};
 
-/// The largest unit of packed texture coordinates, of a texture with a side of 256 texels: 1/256 texel (I16F16).
-///
-/// By so much a [straight run](super::fill::PackedLine) may be behind the coordinates that it is drawn from.
-pub(super) const PACKED_UNIT: u32 = 1 << 8;
-
-/// How far from the ends of their range bent texture coordinates stay, 1/51 texel: in a packed run v is off by one unit where it
-/// begins and one where u repeats, which is after two pixels at the soonest. That is 5 of 2⁸ in the 8 pixels of a large texture,
-/// or 13 of 2⁶ in 24.
-pub(super) const BENT_MARGIN: u32 = 5 << 8;
-
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Attribute {
@@ -25,7 +15,7 @@ pub(super) struct Attribute {
     /// 1 … 31.
     pub(super) shift: i32,
     /// What u may be, I16F16: the least, how much more than u₀ that is, and how much more than the least there may be. It is the
-    /// range at the corners; of a texture coordinate it ends below their greatest value, or a little inside on both sides.
+    /// range at the corners; a texture coordinate [stays inside](Attribute::keep_inside).
     pub(super) least: i32,
     pub(super) low: i32,
     pub(super) range: u32,
@@ -34,40 +24,56 @@ pub(super) struct Attribute {
 }
 
 impl Attribute {
-    /// Moves a straight texture coordinate's plane in the direction of the change that decides of which texel a whole coordinate is:
-    /// by the plane's error, of which `lean` has that direction too, and by a unit of packed coordinates. So a coordinate that is
-    /// whole at a pixel's centre is never taken for the texel on the wrong side.
-    ///
-    /// And ends its range, which is that of the corners yet, below the greatest value there; one that is the same at all corners stays
-    /// what it is.
-    #[inline]
-    pub(super) fn lean(&mut self, lean: i32, unit: u32) {
-        let unit = lean.signum() * (unit as i32 + 1);
-        self.plane.origin = self.plane.origin.wrapping_add_signed(lean + unit);
-        self.range = self.range.saturating_sub(1);
-    }
-
     /// What a straight triangle's plane begins with at corner 0.
     #[inline]
     pub(super) fn origin(&self) -> u32 {
         0u32.wrapping_sub(self.low as u32)
     }
 
-    /// Sets the range from I16F16 values at the corners, but for an `inset` on both sides, as far as there is room for it. Returns by
-    /// how much they rise from corner 0 to 1 and 2.
+    /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
     #[inline]
-    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32, mut inset: u32) -> [i32; 2] {
+    pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
+        let mut attribute = Self::default();
+        let rise = attribute.set_range(at, scale_log2);
+        (attribute, rise)
+    }
+
+    /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
+    #[inline]
+    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        let range = high.wrapping_sub(low) as u32;
+        self.least = at[0] + low;
+        self.low = low;
+        self.range = high.wrapping_sub(low) as u32;
+        self.scale_log2 = scale_log2;
+        rise
+    }
+
+    /// Keeps a texture coordinate below the greatest value at the corners, by an `inset`, and as far above the least, as far as there
+    /// is room. One that is the same at all corners stays what it is.
+    #[inline]
+    pub(super) fn keep_inside(&mut self, mut inset: u32, is_straight: bool) {
+        let range = self.range;
         self.range = range.wrapping_sub(2 * inset);
         if range < 2 * inset {
             (self.range, inset) = (0, range >> 1);
         }
-        self.low = low.wrapping_add_unsigned(inset);
-        self.least = at[0] + self.low;
-        self.scale_log2 = scale_log2;
-        rise
+        self.least = self.least.wrapping_add_unsigned(inset);
+        self.low = self.low.wrapping_add_unsigned(inset);
+        if is_straight {
+            self.plane.origin = self.plane.origin.wrapping_sub(inset);
+        }
+    }
+
+    /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.
+    #[inline]
+    pub(super) fn limit(&mut self, least: i32, greatest: i32) {
+        let more = least.wrapping_sub(self.least);
+        self.least = least;
+        self.low = self.low.wrapping_add(more);
+        self.range = greatest.wrapping_sub(least) as u32;
+        self.plane.origin = self.plane.origin.wrapping_add_signed(-more);
     }
 
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
@@ -94,13 +100,13 @@ impl Attribute {
         if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) }
     }
 
-    /// Where q is the same all along: what a straight triangle's plane would say, and its step.
+    /// Where q is the same all along: as [`Attribute::along`].
     #[inline]
-    pub(super) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32) -> (u32, i32) {
+    pub(super) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32, steps: i32) -> (i32, i32) {
         let product = mul_17(step, reciprocal);
         let down = self.shift - zeros as i32;
         let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
-        (self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step)
+        self.along((self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step), steps)
     }
 
     #[cold]
@@ -125,39 +131,32 @@ impl Attribute {
         self.least.wrapping_add_unsigned(above)
     }
 
-    /// Of a straight run, from its plane's value and step: the attribute at the first and at the last pixel, and whether both are
-    /// within its range; without `scale_log2`.
+    /// Of a straight triangle: the attribute in I16F16 from its plane's value and step, and `steps` pixels further. `None` if one of
+    /// both is outside the attribute's range, where rounding takes the plane.
     #[inline]
-    pub(super) fn ends(&self, (value, step): (u32, i32), steps: i32) -> ([i32; 2], bool) {
-        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
-        let are_inside = first <= self.range && last <= self.range;
-        ([first, last].map(|above| self.least.wrapping_add_unsigned(above)), are_inside)
+    pub(super) fn inside(&self, (value, step): (u32, i32), steps: i32) -> Option<i32> {
+        let last = value.wrapping_add_signed(step.wrapping_mul(steps));
+        (value <= self.range && last <= self.range).then(|| self.least.wrapping_add_unsigned(value))
     }
-}
 
-/// Keeps a straight run within the range of its attributes, some of which leave it by what rounding took them off: where they
-/// are at the first pixel, their steps, and how many steps it makes. Returns how many it may make like that, up to where one of
-/// them crosses the border. From there on that one goes along the border.
-///
-/// So what lies inside is as exact as elsewhere.
-#[cold]
-#[inline(never)]
-pub(super) fn keep_within(attributes: &[Attribute], at: &mut [i32], step: &mut [i32], mut steps: i32) -> i32 {
-    for ((attribute, at), step) in attributes.iter().zip(at).zip(step) {
-        let first = at.wrapping_sub(attribute.least);
-        let inside = first.clamp(0, attribute.range as i32);
-        if inside != first {
-            *at = attribute.least + inside;
-            if *step != 0 && (first < 0) == (*step > 0) {
-                steps = 0;
-            }
-            *step = 0;
-        }
-        while steps > 0 && inside.wrapping_add(step.wrapping_mul(steps)) as u32 > attribute.range {
-            steps -= 1;
-        }
+    /// Likewise, with the step, both times 2^`scale_log2` and within the range.
+    #[inline]
+    pub(super) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let (at, step) = match self.inside((value, step), steps) {
+            Some(at) => (at, step),
+            None => self.bordered((value, step), steps),
+        };
+        (at << self.scale_log2, step << self.scale_log2)
     }
-    steps
+
+    /// As [`Attribute::along`], but for the scale: straight between ends that are within the range.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn bordered(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let last = value.wrapping_add_signed(step.wrapping_mul(steps));
+        let [first, last] = [value, last].map(|above| (above as i32).clamp(0, self.range as i32));
+        (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
+    }
 }
 
 /// 1/n with 31 fraction bits, rounded down.
@@ -171,10 +170,26 @@ static INVERSES: [i32; 32] = {
     inverses
 };
 
-/// 1/`steps` of fewer than 32 with 16 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
+/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
+#[inline]
+fn inverse(steps: usize) -> i32 {
+    INVERSES.get(steps).copied().unwrap_or_else(|| {
+        let reciprocal = Reciprocal::coarse(steps as u32);
+        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
+    })
+}
+
+/// 1/`steps` of fewer than 32 with 16 fraction bits, likewise.
 #[inline]
 pub(super) fn short_inverse(steps: i32) -> u32 {
     INVERSES[steps as usize & 31] as u32 >> 15
+}
+
+/// `rise` in as many steps as [`inverse`] was asked for, cut towards zero.
+#[inline]
+fn step_of(rise: i32, inverse: i32) -> i32 {
+    let size = (wide(rise.wrapping_abs(), inverse) >> 31) as i32;
+    if rise < 0 { -size } else { size }
 }
 
 /// Of a product rounded down: one more if it is negative.

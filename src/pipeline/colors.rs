@@ -4,9 +4,7 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{
-    Fill, PackedLine, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units,
-};
+use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
 use super::patch::Row;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
@@ -128,7 +126,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         C::place(at).word::<F>()
     }
 
-    #[inline(never)]
+    #[inline]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
         let packed_step = C::step(step);
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
@@ -155,7 +153,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     }
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [at, _]: [[i32; M]; 2], step: [i32; M]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
         let step = C::step(step);
         let first = C::place(at);
         row.draw(first, |at| at.plus(step), |at| at.word::<F>());
@@ -186,23 +184,27 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         Self { texture, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
     }
 
-    /// A straight run from a place of packed coordinates, and of light, with the step of each.
+    /// A straight run from a place of u and v, and of light, with the step of each, in the units of bent runs.
     #[inline]
     fn run<const M: usize>(
         &self,
         pixels: &mut [F::Word],
-        [mut packed, step]: [u32; 2],
+        [at, step]: [[i32; 2]; 2],
         [mut light, light_step]: [C; 2],
     ) where
         C: Channels<M>,
     {
+        if !self.is_packed {
+            return self.run_unpacked(pixels, [at, step], [light, light_step]);
+        }
+        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
         }
     }
 
-    /// As [`LitTexels::run`] of a texture that is not packable, from u and v.
+    /// As [`LitTexels::run`] of a texture that is not packable.
     #[inline(never)]
     fn run_unpacked<const M: usize>(
         &self,
@@ -269,7 +271,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     fn short<D: DepthFormat, const M: usize>(
         &self,
         row: Row<'_, F::Word, D>,
-        (ends, step): ([[i32; 2]; 2], [i32; 2]),
+        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
         (light, light_step): ([i32; M], [i32; M]),
     ) where
         C: Channels<M>,
@@ -277,17 +279,20 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         let light_step = C::step(light_step);
         let light = C::place(light);
         if !self.is_packed {
-            let [at, step] = [ends[0], step].map(|uv| uv.map(|value| value << row.scale_log2(0)));
+            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(
                 (at, light),
                 |(at, light)| (plus(at, step), light.plus(light_step)),
                 |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
             );
         }
-        let line = PackedLine::new(self.texture, step, row.scale_log2(0));
-        let words = line.words(self.texture, ends, step[1], row.steps());
+        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let first = packed_from([u >> a, v >> b], u_step);
         let plus = |light: C| light.plus(light_step);
-        row.draw_texels(self.texture, words, light, plus, |texel, light| lit::<F>(texel, light.rgb()));
+        row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {
+            lit::<F>(texel, light.rgb())
+        });
     }
 
     #[inline]
@@ -299,18 +304,13 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
     ) where
         C: Channels<M>,
     {
-        let line = PackedLine::new(self.texture, step, 0);
+        let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
+        let unit_step = [shifted(step[0], a), shifted(step[1], b)];
         let packed_light_step = C::step(light_step);
         let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
         for block in pixels.chunks_mut(1 << log2) {
-            let light_line = [C::place(light), packed_light_step];
-            if self.is_packed {
-                let steps = block.len() as i32 - 1;
-                let last = plus(at, step.map(|step| step.wrapping_mul(steps)));
-                self.run(block, line.words(self.texture, [at, last], step[1], steps), light_line);
-            } else {
-                self.run_unpacked(block, [at, step], light_line);
-            }
+            let packed_light = C::place(light);
+            self.run(block, [[at[0] >> a, at[1] >> b], unit_step], [packed_light, packed_light_step]);
             at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
             for (light, step) in light.iter_mut().zip(light_step) {
                 *light = light.wrapping_add(step << log2);
@@ -344,7 +344,7 @@ macro_rules! fill_of_lit_texels {
                 lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb())
             }
 
-            #[inline(never)]
+            #[inline]
             fn run_long(
                 &self,
                 pixels: &mut [F::Word],
@@ -363,11 +363,10 @@ macro_rules! fill_of_lit_texels {
             fn row<D: DepthFormat>(
                 &self,
                 row: Row<'_, F::Word, D>,
-                [[u, v, light @ ..], [u_last, v_last, ..]]: [[i32; $n]; 2],
+                [u, v, light @ ..]: [i32; $n],
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
-                let uv = ([[u, v], [u_last, v_last]], [u_step, v_step]);
-                self.short(row, uv, (light, light_step));
+                self.short(row, ([u, v], [u_step, v_step]), (light, light_step));
             }
 
             #[inline]

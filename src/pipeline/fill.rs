@@ -40,10 +40,10 @@ pub trait Fill<const N: usize> {
         STRAIGHT
     }
 
-    /// A short row of pixels, some of which may be hidden, from the first of two places to the last, each `step` further, all
-    /// without the row's `scale_log2`.
+    /// A short row of pixels, some of which may be hidden, the first at `at`, each `step` further, both without the row's
+    /// `scale_log2`.
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, [at, _]: [[i32; N]; 2], step: [i32; N]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]) {
         let [at, step]: [[i32; N]; 2] =
             [at, step].map(|value| core::array::from_fn(|i| value[i] << row.scale_log2(i)));
         row.draw(at, |at| plus(at, step), |at| self.pixel(at));
@@ -121,8 +121,9 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
 /// Cortex-M0+ (13 if the run is bent) where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and
 /// whatever has as many.
 ///
-/// A carry from u moves v by its last bit, and steps have no more bits than places. So runs are so short, before they start anew
-/// from 32 bits, that all of that is 1/16 texel at most. A straight one ends where it should, see [`PackedLine`].
+/// A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So runs are so short, before they
+/// start anew from 32 bits, that all of that is 1/16 texel at most. What it is exactly [`Packing`](super::setup::Packing) has, so
+/// that it makes nobody see the wrong side of a whole coordinate, or the opposite border.
 pub(crate) struct Texels<'a, F> {
     texture: &'a Texture<'a>,
     is_packed: bool,
@@ -187,15 +188,13 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         [u_step, v_step]: [i32; 2],
         run: impl Fn(&mut [F::Word], u32, u32),
     ) {
+        let [a, b] = self.texture.log2();
         // After 64 pixels a truncated step is off by 1/16 texel of 64.
         let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let line = PackedLine::new(self.texture, [u_step, v_step], 0);
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
-            let steps = block.len() as i32 - 1;
-            let last = plus([u, v], [u_step, v_step].map(|step| step.wrapping_mul(steps)));
-            let [first, step] = line.words(self.texture, [[u, v], last], v_step, steps);
-            run(block, first, step);
+            run(block, packed_from([u >> a, v >> b], u_step), step);
             if rest.is_empty() {
                 return;
             }
@@ -246,8 +245,7 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
         F::rgb565(self.texture.fetch(u >> 16, v >> 16))
     }
 
-    // Not inlined: it needs the registers.
-    #[inline(never)]
+    #[inline]
     fn run_long(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         if !self.is_packed {
             return self.run_unpacked(pixels, at, step);
@@ -272,14 +270,15 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
     }
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, ends: [[i32; 2]; 2], step: [i32; 2]) {
+    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
         if !self.is_packed {
-            let [at, step] = [ends[0], step].map(|uv| uv.map(|value| value << row.scale_log2(0)));
+            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
             return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
-        let line = PackedLine::new(self.texture, step, row.scale_log2(0));
-        let words = line.words(self.texture, ends, step[1], row.steps());
-        row.draw_texels(self.texture, words, (), |()| (), |texel, ()| F::rgb565(texel));
+        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let first = packed_from([u >> a, v >> b], u_step);
+        row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
     }
 
     #[inline]
@@ -323,76 +322,6 @@ pub(super) fn uv_in_units(
     scale_log2: u32,
 ) -> i32 {
     if is_packed { value >> (texture.log2()[i].wrapping_sub(scale_log2) & 31) } else { value << scale_log2 }
-}
-
-/// A straight run of packed coordinates.
-///
-/// Each coordinate takes steps that are cut to the last bit that there is room for, and **ends** where it should. So between both
-/// ends it is never behind the coordinate that it stands for, and as far ahead as what was cut off comes to from there on. Both ends
-/// lie within the range of the corners, and so does all between.
-///
-/// That is so as long as u does not repeat along the run. Where it does, it carries into v: see [`PackedLine::across`].
-#[derive(Clone, Copy)]
-pub(super) struct PackedLine {
-    /// Log₂ of the units of u and v in units of the coordinates.
-    log2: [u32; 2],
-    /// Of u and v, in these units, cut towards zero.
-    step: [i32; 2],
-}
-
-impl PackedLine {
-    /// With a step of u and v (I16F16) before both are multiplied by 2^`scale_log2`.
-    #[inline(always)]
-    pub(super) fn new(texture: &Texture<'_>, [u, v]: [i32; 2], scale_log2: u32) -> Self {
-        let [a, b] = texture.log2().map(|log2| log2.wrapping_sub(scale_log2) & 31);
-        Self { log2: [a, b], step: [shifted(u, a), shifted(v, b)] }
-    }
-
-    /// The word at the first pixel and its step, from u and v (I16F16) at the first pixel and at the last, which is so many steps
-    /// further, and the step of v.
-    #[inline(always)]
-    pub(super) fn words(
-        &self,
-        texture: &Texture<'_>,
-        [first, last]: [[i32; 2]; 2],
-        v_step: i32,
-        steps: i32,
-    ) -> [u32; 2] {
-        let ([a, b], [u, v]) = (self.log2, self.step);
-        let (first_u, last_u) = (first[0] >> a, last[0] >> a);
-        let at_end = ((last[1] >> b) as u32) << 16 | (last_u as u32 & 0xffff);
-        if (first_u ^ last_u) >> 16 != 0 {
-            let [_, rows_log2] = texture.log2();
-            return Self::across(at_end, u, (v_step, (16 - b) & 31), [steps as u32, rows_log2]);
-        }
-        let step = ((v as u32) << 16).wrapping_add(u as u32);
-        [at_end.wrapping_sub(step.wrapping_mul(steps as u32)), step]
-    }
-
-    /// Likewise where u repeats along the run, from the word at its end, the step of u in its units, that of v in I16F16 and by how
-    /// much that is to be shifted left to have 16 bits more than v's units.
-    ///
-    /// As one number the word changes by the same at every pixel, whatever is carried. With that step v′·2¹⁶ rounded towards zero, but
-    /// with u′ in the lower half, the word is nowhere behind v·2¹⁶, give or take the lower half: so v is behind by less than a unit.
-    /// (Straight coordinates [lean](super::attribute::Attribute::lean) by a unit for that, and others stay [that far
-    /// inside](super::attribute::Attribute::keep_inside) their range.)
-    ///
-    /// Where v′ is less than a unit, that could carry v back beyond its end. There v does not change at all, and is in the middle of
-    /// the texel that it ends at: it is at most 64 units ahead. Carries of u, 32 at most if whole turns are left out, do not leave
-    /// that texel then, which is 2⁸ units high or more.
-    #[cold]
-    #[inline(never)]
-    fn across(at_end: u32, u: i32, (v, up): (i32, u32), [steps, rows_log2]: [u32; 2]) -> [u32; 2] {
-        let (at_end, step) = if v.unsigned_abs() >> (16 - up) == 0 {
-            let half = 1_u32 << (31 - rows_log2);
-            (at_end & ((half << 1).wrapping_neg() | 0xffff) | half, u as i16 as u32)
-        } else {
-            let towards_zero = (v >> 31) as u32 >> 16;
-            let v = ((v as u32) << up).wrapping_sub(u as u32).wrapping_add(towards_zero);
-            (at_end, (v & 0xffff_0000).wrapping_add(u as u32))
-        };
-        [at_end.wrapping_sub(step.wrapping_mul(steps)), step]
-    }
 }
 
 /// The place of a run, whose first step of u is negative or not.

@@ -7,8 +7,7 @@
 //!
 //! What a pixel shows depends on its triangle alone, not on what hides it or where the band begins: rows are shaded whole.
 
-use super::attribute::keep_within;
-use super::fill::{Each, Fill, plus, sized};
+use super::fill::{Each, Fill, sized};
 use super::setup::TriangleSetup;
 use super::shade::{Pixels, Quality, sealed::Sealed};
 use super::span::Rows;
@@ -77,9 +76,10 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let scale_log2 = attributes.first().map_or(0, |attribute| attribute.scale_log2);
         row = row.wrapping_add(x as usize);
         rows.each_simple([x, y], |n, mut m, end| {
-            while m < end {
-                let mut steps = (end - m - 1).min(longest);
-                let (mut at, mut last, mut step, mut are_inside) = ([0; N], [0; N], [0; N], true);
+            let mut longest = longest;
+            'run: while m < end {
+                let steps = (end - m - 1).min(longest);
+                let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
                     if is_bent {
@@ -91,15 +91,15 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    let ([first, end], is_inside) = attribute.ends((value, right), steps);
-                    (at[i], last[i], step[i]) = (first, end, right);
-                    are_inside &= is_inside;
-                }
-                if !are_inside {
-                    let mut within = (at, step);
-                    steps = keep_within(attributes, &mut within.0, &mut within.1, steps);
-                    (at, step) = within;
-                    last = plus(at, step.map(|step| step.wrapping_mul(steps)));
+                    (at[i], step[i]) = match attribute.inside((value, right), steps) {
+                        Some(at) => (at, right),
+                        // Up to where it leaves its range an exact attribute stays so.
+                        None if setup.leans && steps > 0 => {
+                            longest = steps >> 1;
+                            continue 'run;
+                        }
+                        None => attribute.bordered((value, right), steps),
+                    };
                 }
                 let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
                 // In two steps: the end of a range is checked more dearly.
@@ -111,11 +111,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                 };
                 if let (Some(pixels), Some(depth)) = (part(&mut *pixels), depth) {
                     let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
-                    fill.row(
-                        Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 },
-                        [at, last],
-                        step,
-                    );
+                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
                 }
                 m += steps + 1;
             }
@@ -141,12 +137,6 @@ pub struct Row<'a, W, D: DepthFormat> {
 }
 
 impl<W, D: DepthFormat> Row<'_, W, D> {
-    /// How many steps it has.
-    #[inline]
-    pub(super) fn steps(&self) -> i32 {
-        self.pixels.len() as i32 - 1
-    }
-
     /// By how much attribute `i` is to be shifted left.
     #[inline]
     pub(super) fn scale_log2(&self, i: usize) -> u32 {

@@ -34,7 +34,7 @@
 //! evaluated by weights from the exact edge functions, which never cancel; `Exact` mixes attributes at every pixel, by weights
 //! from the exact products of edge functions and q. Both are slower, rare, and out of line.
 
-use super::attribute::{Attribute, BENT_MARGIN, PACKED_UNIT};
+use super::attribute::Attribute;
 use super::clip::ScreenVertex;
 use super::color::is_gray;
 use super::patch::STRAIGHT;
@@ -71,9 +71,6 @@ impl Cull {
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(super) const ATTRIBUTES: usize = 5;
 
-/// Says of an attribute that it is u or v: added to log₂ of their scale.
-pub(super) const TEXEL: u32 = 1 << 8;
-
 /// A triangle ready to be cut into spans: corners clockwise on the screen, the nearest first.
 #[derive(Debug)]
 pub(crate) struct TriangleSetup {
@@ -89,6 +86,8 @@ pub(crate) struct TriangleSetup {
     pub(super) is_small: bool,
     /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
     pub(super) straight: bool,
+    /// Whether they are so exactly, and texture coordinates [lean](TriangleSetup::lean).
+    pub(super) leans: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(super) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
@@ -112,7 +111,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Moves a step to the nearest multiple of 2⁻¹² texels if that is within its error, and returns by how much.
+    /// Moves a step to the nearest multiple of 2⁻¹² if that is within its error, and returns by how much.
     ///
     /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
     /// coordinates at every pixel.
@@ -134,8 +133,6 @@ struct Slopes {
     /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
     of_weights: [[i32; 2]; 2],
     fraction_bits: i32,
-    /// Whether attributes are exactly linear on the screen: then texture coordinates [lean](TriangleSetup::lean).
-    is_exact: bool,
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
@@ -152,6 +149,47 @@ impl Slopes {
         let [b, c] = self.of_weights[axis];
         mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c))
     }
+
+    /// How far behind a value that rises so from corner 0 to 1 and 2 its plane may be, in the [`direction`] of the value's change.
+    ///
+    /// The plane begins at corner 0's pixel, or where the screen does. From there on it is off by what rounding took from a step, at
+    /// every column and row: that is known, and so is where it is worst. Beside that there are three units of a slope (below [the
+    /// head](self)), and 16 units of what lies between the corner and its pixel's centre. A sliver's plane is exact to 4 units where a
+    /// run begins, and its step to half a unit.
+    #[cold]
+    #[inline(never)]
+    fn error(&self, corners: &[[i32; 2]; 3], sliver: bool, plane: &mut Plane, rise: [i32; 2]) -> u32 {
+        let direction = direction(&edges(corners), rise);
+        let mut error = 24;
+        for axis in 0..2 {
+            let [a, b, c] = corners.map(|corner| corner[axis] >> 4);
+            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+            if sliver {
+                error += (last - first).min(1023) >> 1;
+                continue;
+            }
+            // What may be seen of it is not wider and higher than a screen. How far that goes in the direction.
+            let ends = [first.max((last - 1023).min(0)), last.min(1023)];
+            let most = |from: i32, rate: i32| (rate * (ends[0] - from)).max(rate * (ends[1] - from)).max(0);
+            let (bits, pixel) = (self.fraction_bits, self.pixel[axis]);
+            let uncertain = most(pixel, 3 * direction);
+            error += 2 + if bits < 0 { uncertain << (-bits & 31) } else { uncertain >> bits };
+            let snapped = if bits < 3 {
+                plane.snap(axis, pixel, 2 + ((3 << 12) >> (bits + 12).max(0)) as u32)
+            } else {
+                0
+            };
+            if bits <= 0 {
+                error += most(pixel, -snapped * direction);
+                continue;
+            }
+            // With 12 bits, times at most 2047.
+            let rest = self.slope(axis, rise).wrapping_sub(plane.steps[axis] << bits);
+            let rest = if bits > 12 { rest >> (bits - 12) } else { rest << (12 - bits) };
+            error += most(pixel + self.to_screen[axis], rest * direction) >> 12;
+        }
+        error as u32
+    }
 }
 
 /// What a shader wants of a triangle.
@@ -162,10 +200,49 @@ pub(super) struct Needs {
     pub(super) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(super) texture_scale: u32,
+    pub(super) packing: Packing,
     /// Whether depth is tested.
     pub(super) depth: bool,
     /// Whether all colours are known to be grey.
     pub(super) gray: bool,
+}
+
+/// How [packed texture coordinates](super::fill::Texels) are drawn, before they are scaled. Of others a unit is 1, and a run has no
+/// steps that add up.
+pub(super) struct Packing {
+    /// The larger unit of the two, I16F16: at a run's first pixel they are rounded down to it, and their steps are cut to it.
+    unit: u32,
+    /// The most steps before a run starts anew.
+    steps: u32,
+    /// Log₂ of where u repeats, I16F16. There it carries into v.
+    turn_log2: u32,
+    /// How far from the ends of their range coordinates stay that may not be [exactly straight](TriangleSetup::lean): as far as the
+    /// most carries can take v.
+    pub(super) inset: u32,
+}
+
+impl Packing {
+    /// Of a texture with sides of these log₂.
+    pub(super) fn new(log2: Option<[u32; 2]>, scale_log2: u32) -> Self {
+        let Some([a, b]) = log2 else {
+            return Self { unit: 1, steps: 0, turn_log2: 31, inset: 1 };
+        };
+        let steps = if a.max(b) > 6 { 15 } else { 63 };
+        let unit = 1 << (a.max(b).wrapping_sub(scale_log2) & 31);
+        Self { unit, steps, turn_log2: 16 + a - scale_log2, inset: unit * Self::most_carries(steps) }
+    }
+
+    /// As whole turns of u are left out of a step, it repeats after two steps at the soonest, and once more where it begins. And there
+    /// v may be one unit too large for what a falling u is to borrow from it.
+    const fn most_carries(steps: u32) -> u32 {
+        steps / 2 + 2
+    }
+
+    /// Likewise, where u changes by no more than this.
+    fn carries(&self, u_step: u32, steps: u32) -> u32 {
+        let turns = ((u_step >> 8) * steps) >> (self.turn_log2 - 8);
+        (turns + 3).min(Self::most_carries(self.steps))
+    }
 }
 
 impl Needs {
@@ -175,15 +252,14 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
-    /// A part of a texel (I16F16) as it is before texture coordinates are scaled, 1 at least; that where a division at every pixel
-    /// needs no such margin.
+    /// Whether u and v are among the attributes: they come first.
     #[inline]
-    pub(super) fn margin(&self, texels: u32) -> u32 {
-        if self.every_pixel { 1 } else { texels >> self.texture_scale }
+    pub(super) fn has_texels(&self) -> bool {
+        matches!(self.inputs, Inputs::Uv | Inputs::UvColor)
     }
 
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, to which [`TEXEL`] is added for u and
-    /// v, until one returns false: u and v, then colours, of which there is one in a grey triangle.
+    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
+    /// v, then colours, of which there is one in a grey triangle.
     #[inline]
     pub(super) fn each_attribute(
         &self,
@@ -208,7 +284,7 @@ impl Needs {
                 1 => vertex.v.to_bits(),
                 _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
             };
-            set(i - first, vertices.map(at), if i < 2 { self.texture_scale | TEXEL } else { 0 })
+            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
         })
     }
 }
@@ -263,6 +339,7 @@ impl TriangleSetup {
             sliver: false,
             is_small: false,
             straight: false,
+            leans: false,
             z: Plane::default(),
             q: Plane::default(),
             longest: 0,
@@ -274,6 +351,7 @@ impl TriangleSetup {
     #[inline]
     pub(super) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
+        self.leans = false;
         self.is_small = true;
         self.longest = STRAIGHT;
         if needs.inputs == Inputs::None && !needs.depth {
@@ -293,7 +371,7 @@ impl TriangleSetup {
         self.is_small = false;
         let vertices = triangle.vertices;
         self.area = Reciprocal::precise(triangle.area);
-        let mut slopes = self.slopes(triangle.area);
+        let slopes = self.slopes(triangle.area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
@@ -312,9 +390,9 @@ impl TriangleSetup {
             self.straight = true;
             return;
         }
-        slopes.is_exact = needs.is_exactly_straight(self.q_min, q[0]);
+        let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Below(limit) if !slopes.is_exact => {
+            Straight::Below(limit) if !is_exact => {
                 Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
             }
             _ => true,
@@ -323,54 +401,73 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
-        let margin = needs.margin(if self.straight { PACKED_UNIT } else { BENT_MARGIN });
         needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let inset = if slopes.is_exact || scale_log2 & TEXEL == 0 { 0 } else { margin };
-            let mut attribute = self.attribute(&slopes, at, [scale_log2 & !TEXEL, inset], &q, mixed);
-            if slopes.is_exact && scale_log2 & TEXEL != 0 {
-                let lean = self.lean(&slopes, &attribute.plane, [at[1] - at[0], at[2] - at[0]]);
-                attribute.lean(lean, margin);
-            }
-            self.attributes[i] = attribute;
+            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
+        if needs.has_texels() && is_exact {
+            let (corners, sliver) = (self.corners, self.sliver);
+            self.lean(triangle, needs, &|plane, rise| slopes.error(&corners, sliver, plane, rise));
+        } else if needs.has_texels() {
+            self.keep_inside(needs.packing.inset, self.straight);
+        }
     }
 
-    /// How a straight coordinate that rises so from corner 0 to 1 and 2 changes infinitesimally right of a pixel's centre, then
-    /// below (see [`direction`]), times the error of its plane, which is against that direction at most so large.
+    /// Keeps texture coordinates that may not be exactly straight inside their range.
+    #[inline]
+    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
+        for attribute in self.attributes.iter_mut().take(2) {
+            attribute.keep_inside(inset, is_straight);
+        }
+    }
+
+    /// Makes exactly straight texture coordinates lean in the direction of the change that decides of which texel a whole coordinate
+    /// is (see [`direction`]): by as much as their plane, of which `error_of` tells, and the run that is drawn from it may be behind.
+    /// So a coordinate that is whole at a pixel's centre is never taken for the texel on the wrong side.
     ///
-    /// The plane begins at corner 0's pixel, or where the screen does. From there on it is off by what rounding took from a step, at
-    /// every column and row: that is known, and so is where it is worst. Beside that there are three units of a slope (below
-    /// [the head](self)), and 16 units of what lies between the corner and its pixel's centre. A sliver's plane is exact to 4 units
-    /// where a run begins, and its step to half a unit.
+    /// A run of packed coordinates is behind by what they are rounded down to at its first pixel, by what its step is cut to, at every
+    /// further pixel, and v by the carries of u, which may put it ahead, too. So v stays that far from the border between two texels
+    /// where the end of its range lies close to one; which texels it shows does not depend on that.
     #[cold]
     #[inline(never)]
-    fn lean(&self, slopes: &Slopes, plane: &Plane, rise: [i32; 2]) -> i32 {
-        let direction = direction(&edges(&self.corners), rise);
-        let mut error = 24;
-        for axis in 0..2 {
-            let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
-            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
-            if self.sliver {
-                error += (last - first).min(1023) >> 1;
+    pub(super) fn lean(
+        &mut self,
+        triangle: &Oriented<'_>,
+        needs: &Needs,
+        error_of: &dyn Fn(&mut Plane, [i32; 2]) -> u32,
+    ) {
+        self.leans = true;
+        let packing = &needs.packing;
+        let [a, b, c] = self.corners.map(|[x, _]| x >> 4);
+        let width = (a.max(b).max(c) - a.min(b).min(c)) as u32;
+        let steps = width.min(packing.steps);
+        let texel = 0x10000 >> needs.texture_scale;
+        let mut carries = 0;
+        for i in 0..2 {
+            let at = triangle.vertices.map(|vertex| if i == 0 { vertex.u } else { vertex.v }.to_bits());
+            let rise = [at[1] - at[0], at[2] - at[0]];
+            let direction = direction(&edges(&self.corners), rise);
+            if direction == 0 {
                 continue;
             }
-            let bits = slopes.fraction_bits;
-            let uncertain = 3 * (last - first + 1);
-            if bits <= 0 {
-                error += uncertain << (-bits & 31);
-                continue;
+            let attribute = &mut self.attributes[i];
+            let mut behind = error_of(&mut attribute.plane, rise) + packing.unit * (1 + carries);
+            // Its steps are not those of a sliver's plane.
+            let step = if self.sliver { u32::MAX >> 1 } else { attribute.plane.steps[0].unsigned_abs() };
+            behind += steps * (step & (packing.unit - 1));
+            attribute.plane.origin =
+                attribute.plane.origin.wrapping_add_signed(direction * (behind as i32 + 1));
+            let (mut least, mut most) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
+            let room = (carries * packing.unit) as i32;
+            if least & (texel - 1) < room {
+                least += room;
             }
-            // With 12 bits, times at most 2047.
-            let rest = slopes.slope(axis, rise).wrapping_sub(plane.steps[axis] << bits);
-            let rest = direction * if bits > 12 { rest >> (bits - 12) } else { rest << (12 - bits) };
-            // What may be seen of it is not wider and higher than a screen.
-            let first = first.max((last - 1023).min(0));
-            let start = slopes.pixel[axis] + slopes.to_screen[axis];
-            let most = (rest * (first - start)).max(rest * (last.min(1023) - start)).max(0);
-            error += (most >> 12) + (uncertain >> bits) + 2;
+            if most & (texel - 1) >= texel - room {
+                most -= room;
+            }
+            attribute.limit(least, most.max(least));
+            carries = packing.carries(step, steps);
         }
-        direction * error
     }
 
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
@@ -457,7 +554,6 @@ impl TriangleSetup {
             of_weights: edges.map(|edge| edge.map(|e| (wide(e << shift, self.area.mantissa) >> 31) as i32)),
             // (e·2^shift · mantissa / 2³¹) · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
             fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
-            is_exact: false,
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
             to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
@@ -506,12 +602,11 @@ impl TriangleSetup {
         &self,
         slopes: &Slopes,
         at: [i32; 3],
-        [scale_log2, inset]: [u32; 2],
+        scale_log2: u32,
         q: &[u32; 3],
         mixed: bool,
     ) -> Attribute {
-        let mut attribute = Attribute::default();
-        let rise = attribute.set_range(at, scale_log2, inset);
+        let (mut attribute, rise) = Attribute::between(at, scale_log2);
         if self.straight || mixed {
             let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
             attribute.plane = self.plane(slopes, origin, rise);
@@ -536,9 +631,15 @@ pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
 
 /// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
 /// any point, and infinitely less below that: as in the top-left rule. Exact.
+#[inline(never)]
 pub(super) fn direction(edges: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
-    let [right, down] = edges.map(|[b, c]| (wide(rise[0], b) + wide(rise[1], c)).signum() as i32);
-    if right != 0 { right } else { down }
+    let mut direction = 0;
+    for [b, c] in edges {
+        if direction == 0 {
+            direction = (wide(rise[0], *b) + wide(rise[1], *c)).signum() as i32;
+        }
+    }
+    direction
 }
 
 pub(super) fn position(vertex: &ScreenVertex) -> [i32; 2] {

@@ -18,9 +18,9 @@
 //! allowed. [`Patch`](super::Patch) draws a row of it as a straight line between its ends, or several, and may be wrong by as
 //! much again.
 
-use super::attribute::{Attribute, PACKED_UNIT};
+use super::attribute::Attribute;
 use super::patch::STRAIGHT;
-use super::setup::{Needs, Oriented, Plane, TEXEL, TriangleSetup, direction, edges};
+use super::setup::{Needs, Oriented, Plane, TriangleSetup, edges};
 use super::shade::Inputs;
 use super::straight::{Bend, Straight};
 use crate::math::recip::short_of;
@@ -33,10 +33,6 @@ struct Slopes {
     /// 1/area = `reciprocal` · 2^(`zeros` − 48).
     reciprocal: u32,
     zeros: u32,
-    /// How far inside their range texture coordinates stay; 0 if they are exactly straight, and [lean](Slopes::lean) instead: by this
-    /// unit and their planes' errors.
-    inset: u32,
-    unit: u32,
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
@@ -55,13 +51,9 @@ impl Slopes {
     /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
     #[inline(never)]
     fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
-        let inset = if scale_log2 == 0 { 0 } else { self.inset };
-        let rise = attribute.set_range(*at, scale_log2 & !TEXEL, inset);
+        let rise = attribute.set_range(*at, scale_log2);
         attribute.plane.origin = attribute.origin();
         self.set(&mut attribute.plane, rise[0], rise[1]);
-        if scale_log2 != 0 && self.inset == 0 {
-            self.lean(attribute, rise);
-        }
         attribute.range < 1 << 27
     }
 
@@ -93,7 +85,7 @@ impl Slopes {
 }
 
 impl Slopes {
-    /// Makes an exactly straight texture coordinate lean by the error of its plane, which is at most so large, in units:
+    /// How far behind a value that rises so from corner 0 to 1 and 2 its plane may be. In units:
     ///
     /// - 2⁻¹⁶·⁸ of a step from the reciprocal, at 64 columns and rows: 2⁻¹⁰ of one step to the right and one down;
     /// - 1 from rounding a step, at every column and row; where a step is shifted up, 2^shift, which is 64 over all columns or rows
@@ -103,7 +95,7 @@ impl Slopes {
     /// - what a step is moved by, at every column and row, to [the multiple](Plane::snap) that it may be.
     #[cold]
     #[inline(never)]
-    fn lean(&self, attribute: &mut Attribute, rise: [i32; 2]) {
+    fn error(&self, plane: &mut Plane, rise: [i32; 2]) -> u32 {
         let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
         let largest = self.edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
         let mut error = 24 + if size < 1 << 19 { largest >> 3 } else { 128 };
@@ -111,12 +103,11 @@ impl Slopes {
             error += 384;
         }
         for axis in 0..2 {
-            let step = attribute.plane.steps[axis];
-            error += step.unsigned_abs() >> 10;
-            let change = attribute.plane.snap(axis, self.pixel[axis], 2 + (step.unsigned_abs() >> 16));
-            error += change.unsigned_abs() * ((largest >> 4) + 2);
+            let step = plane.steps[axis].unsigned_abs();
+            let change = plane.snap(axis, self.pixel[axis], 2 + (step >> 16));
+            error += (step >> 10) + change.unsigned_abs() * ((largest >> 4) + 2);
         }
-        attribute.lean(direction(&self.edges, rise) * error as i32, self.unit);
+        error
     }
 }
 
@@ -137,13 +128,10 @@ impl TriangleSetup {
             return false;
         }
         let (reciprocal, zeros) = short_of(triangle.area);
-        let unit = needs.margin(PACKED_UNIT);
         let slopes = Slopes {
             edges,
             reciprocal,
             zeros,
-            inset: if needs.is_exactly_straight(least, most) { 0 } else { unit },
-            unit,
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
@@ -157,12 +145,15 @@ impl TriangleSetup {
         }
         match needs.straight {
             Straight::Below(limit)
-                if needs.inputs != Inputs::None && !Bend::is_needless(&edges, q, least, limit) =>
+                if needs.inputs != Inputs::None
+                    && most != least
+                    && !Bend::is_needless(&edges, q, least, limit) =>
             {
                 self.set_bending(triangle, needs, &slopes, &q, limit, simple)
             }
             _ => {
                 self.straight = true;
+                self.leans = needs.is_exactly_straight(least, most);
                 self.set_linear(triangle, needs, &slopes)
             }
         }
@@ -202,7 +193,7 @@ impl TriangleSetup {
         needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
             let rise = [b - a, c - a];
             (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
-                && bend.is_straight_for(limit, rise, 0x10000 >> (scale_log2 & !TEXEL))
+                && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
         })
     }
 
@@ -212,9 +203,17 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        let are_set = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
-        })
+        });
+        if needs.has_texels() {
+            if self.leans {
+                self.lean(triangle, needs, &|plane, rise| slopes.error(plane, rise));
+            } else {
+                self.keep_inside(needs.packing.inset, true);
+            }
+        }
+        are_set
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.

@@ -16,7 +16,7 @@
 //! pixels where q changes by 1/12 of itself a pixel (a straight line could be 3 long), every 16 where it is 1/33 (5). Floors
 //! seen level and walls seen straight (q′ ≈ 0) are one straight run with one division.
 
-use super::attribute::{Attribute, keep_within, short_inverse, towards_zero};
+use super::attribute::{Attribute, short_inverse, towards_zero};
 use super::fill::Fill;
 use super::shade::Quality;
 use super::span::Span;
@@ -150,8 +150,28 @@ impl Span<'_> {
         };
         let mut left = pixels.len() as i32 - 1;
         if setup.straight {
-            let at = |attribute: &Attribute| setup.at(&attribute.plane, self.x, self.y);
-            return straight(attributes, attributes.each_ref().map(at), pixels, fill);
+            let mut span = *self;
+            'run: loop {
+                let (mut at, mut step) = ([0; N], [0; N]);
+                for (i, attribute) in attributes.iter().enumerate() {
+                    let plane = setup.at(&attribute.plane, span.x, span.y);
+                    if setup.leans && left > 0 && attribute.inside(plane, left).is_none() {
+                        // Up to where it leaves its range an exact attribute stays so.
+                        left >>= 1;
+                        continue 'run;
+                    }
+                    (at[i], step[i]) = attribute.along(plane, left);
+                }
+                let count = left as usize + 1;
+                let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count) else {
+                    return;
+                };
+                fill.run_long(run, at, step);
+                if rest.is_empty() {
+                    return;
+                }
+                (left, pixels, span) = (rest.len() as i32 - 1, rest, span.ahead(count));
+            }
         }
         if Q::EVERY_PIXEL && setup.sliver {
             for (x, pixel) in (self.x..).zip(pixels) {
@@ -169,8 +189,11 @@ impl Span<'_> {
         }
         if walk.is_level(left) {
             let (reciprocal, zeros) = (short(walk.normalised()), walk.zeros);
-            let level = |i: usize| attributes[i].level(walk.values[i], walk.steps[i], reciprocal, zeros);
-            return straight(attributes, core::array::from_fn(level), pixels, fill);
+            let (mut at, mut step) = ([0; N], [0; N]);
+            for (i, attribute) in attributes.iter().enumerate() {
+                (at[i], step[i]) = attribute.level(walk.values[i], walk.steps[i], reciprocal, zeros, left);
+            }
+            return fill.run_long(pixels, at, step);
         }
         // Where q changes by half of itself within a pixel, at every pixel.
         let least = walk.least(left);
@@ -214,57 +237,6 @@ impl Span<'_> {
             let by_slope = lengths[(slope.unsigned_abs() >> 7).min(127) as usize];
             length = i32::from(by_slope).min(longest).min(left);
             walk.advance(length);
-        }
-    }
-}
-
-/// Fills pixels along which attributes are straight, from the values of their planes and the steps of these.
-#[inline(always)]
-fn straight<const N: usize, L: Fill<N>>(
-    attributes: &[Attribute; N],
-    lines: [(u32, i32); N],
-    pixels: &mut [L::Word],
-    fill: &L,
-) {
-    let (mut at, mut step, mut are_inside) = ([0; N], [0; N], true);
-    for (i, attribute) in attributes.iter().enumerate() {
-        let ([first, _], is_inside) = attribute.ends(lines[i], pixels.len() as i32 - 1);
-        (at[i], step[i]) = (first << attribute.scale_log2, lines[i].1 << attribute.scale_log2);
-        are_inside &= is_inside;
-    }
-    if are_inside {
-        fill.run_long(pixels, at, step)
-    } else {
-        straight_to_border(attributes, lines, pixels, fill)
-    }
-}
-
-/// As [`straight`], where some attribute leaves its range.
-#[cold]
-#[inline(never)]
-fn straight_to_border<const N: usize, L: Fill<N>>(
-    attributes: &[Attribute; N],
-    mut lines: [(u32, i32); N],
-    mut pixels: &mut [L::Word],
-    fill: &L,
-) {
-    while !pixels.is_empty() {
-        let (mut at, mut step) = ([0; N], [0; N]);
-        for (i, attribute) in attributes.iter().enumerate() {
-            let ([first, _], _) = attribute.ends(lines[i], 0);
-            (at[i], step[i]) = (first, lines[i].1);
-        }
-        let count = keep_within(attributes, &mut at, &mut step, pixels.len() as i32 - 1) + 1;
-        for (i, attribute) in attributes.iter().enumerate() {
-            (at[i], step[i]) = (at[i] << attribute.scale_log2, step[i] << attribute.scale_log2);
-        }
-        let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize) else {
-            return;
-        };
-        fill.run_long(run, at, step);
-        pixels = rest;
-        for (value, step) in &mut lines {
-            *value = value.wrapping_add_signed(step.wrapping_mul(count));
         }
     }
 }
