@@ -4,7 +4,9 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
+use super::fill::{
+    Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, turned, uv_in_units,
+};
 use super::patch::Row;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
@@ -197,7 +199,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         if !self.is_packed {
             return self.run_unpacked(pixels, [at, step], [light, light_step]);
         }
-        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
+        let (mut packed, step) = (packed_from(at, step[0]), packed_step([turned(step[0]), step[1]]));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
@@ -287,7 +289,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
             );
         }
         let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
         let first = packed_from([u >> a, v >> b], u_step);
         let plus = |light: C| light.plus(light_step);
         row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {

@@ -191,7 +191,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         let [a, b] = self.texture.log2();
         // After 64 pixels a truncated step is off by 1/16 texel of 64.
         let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
             run(block, packed_from([u >> a, v >> b], u_step), step);
@@ -276,7 +276,7 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
         let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
         let first = packed_from([u >> a, v >> b], u_step);
         row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
     }
@@ -331,10 +331,16 @@ pub(super) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
     ((v as u32) << 16 | (u as u32 & 0xffff)).wrapping_add((u_step as u32 >> 31) << 16)
 }
 
-/// A difference: u may be negative, and then borrows from v. Whole turns of u are left out, which would be carried into v.
+/// A difference: u may be negative, and then borrows from v.
 #[inline]
 pub(super) fn packed_step([u, v]: [i32; 2]) -> u32 {
-    ((v as u32) << 16).wrapping_add(u as i16 as u32)
+    ((v as u32) << 16).wrapping_add(u as u32)
+}
+
+/// A step of u without whole turns, which would be carried into v.
+#[inline]
+pub(super) fn turned(u_step: i32) -> i32 {
+    (u_step as i16).into()
 }
 
 /// A step without its last bits, cut towards zero.

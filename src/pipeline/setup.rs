@@ -480,6 +480,20 @@ impl TriangleSetup {
         (plane.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down))), right)
     }
 
+    /// Along how many of `steps` steps to the right the first so many attributes of a straight triangle stay within their range, or
+    /// the one that is outside does not come back.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn straight_steps(&self, count: usize, [x, y]: [i32; 2], mut steps: i32) -> i32 {
+        for attribute in self.attributes.iter().take(count) {
+            let (value, step) = self.at(&attribute.plane, x, y);
+            while steps > 0 && value <= attribute.range && attribute.inside((value, step), steps).is_none() {
+                steps >>= 1;
+            }
+        }
+        steps
+    }
+
     /// By weights: exact edge functions times 1/area.
     #[cold]
     #[inline(never)]
