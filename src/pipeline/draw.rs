@@ -324,12 +324,13 @@ pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     [is_orthographic, is_gray]: [bool; 2],
 ) -> Needs {
     let texture_scale = shader.texture_scale().min(8);
+    let packing = Packing::new(shader.packed_log2(), texture_scale);
     Needs {
         inputs: shader.inputs(),
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
-        texture_scale,
-        packing: Packing::new(shader.packed_log2(), texture_scale),
+        texel: texture_scale | packing.inset() << 8,
+        packing,
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,
     }

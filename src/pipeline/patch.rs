@@ -72,13 +72,17 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let near_w_step = setup.z.steps[0];
         // Hidden, so that the compiler keeps one number.
         let longest = core::hint::black_box(setup.longest.min(fill.longest_row()));
+        let leans = setup.leans;
         let is_bent = setup.longest < STRAIGHT;
         let scale_log2 = attributes.first().map_or(0, |attribute| attribute.scale_log2);
         row = row.wrapping_add(x as usize);
         rows.each_simple([x, y], |n, mut m, end| {
-            let mut longest = longest;
-            'run: while m < end {
-                let steps = (end - m - 1).min(longest);
+            while m < end {
+                let mut steps = (end - m - 1).min(longest);
+                if leans {
+                    // Up to where it leaves its range an exact attribute stays so.
+                    steps = setup.straight_steps(N, [x + m, y + n], steps);
+                }
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
@@ -91,15 +95,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    (at[i], step[i]) = match attribute.inside((value, right), steps) {
-                        Some(at) => (at, right),
-                        // Up to where it leaves its range an exact attribute stays so.
-                        None if setup.leans && steps > 0 => {
-                            longest = steps >> 1;
-                            continue 'run;
-                        }
-                        None => attribute.bordered((value, right), steps),
-                    };
+                    (at[i], step[i]) = attribute.unscaled((value, right), steps);
                 }
                 let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
                 // In two steps: the end of a range is checked more dearly.

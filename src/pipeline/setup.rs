@@ -198,8 +198,9 @@ pub(super) struct Needs {
     pub(super) straight: Straight,
     /// Whether it divides at every pixel.
     pub(super) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8.
-    pub(super) texture_scale: u32,
+    /// u and v are multiplied by 2^this, 0 … 8. Behind the lower 8 bits is how far from the ends of their range they stay, I16F16,
+    /// if they may not be [exactly straight](TriangleSetup::lean): as far as [packing](Packing) can take them.
+    pub(super) texel: u32,
     pub(super) packing: Packing,
     /// Whether depth is tested.
     pub(super) depth: bool,
@@ -216,20 +217,22 @@ pub(super) struct Packing {
     steps: u32,
     /// Log₂ of where u repeats, I16F16. There it carries into v.
     turn_log2: u32,
-    /// How far from the ends of their range coordinates stay that may not be [exactly straight](TriangleSetup::lean): as far as the
-    /// most carries can take v.
-    pub(super) inset: u32,
 }
 
 impl Packing {
     /// Of a texture with sides of these log₂.
     pub(super) fn new(log2: Option<[u32; 2]>, scale_log2: u32) -> Self {
         let Some([a, b]) = log2 else {
-            return Self { unit: 1, steps: 0, turn_log2: 31, inset: 1 };
+            return Self { unit: 1, steps: 0, turn_log2: 31 };
         };
         let steps = if a.max(b) > 6 { 15 } else { 63 };
         let unit = 1 << (a.max(b).wrapping_sub(scale_log2) & 31);
-        Self { unit, steps, turn_log2: 16 + a - scale_log2, inset: unit * Self::most_carries(steps) }
+        Self { unit, steps, turn_log2: 16 + a - scale_log2 }
+    }
+
+    /// How far the most carries can take v, at least 1.
+    pub(super) fn inset(&self) -> u32 {
+        if self.steps == 0 { 1 } else { self.unit * Self::most_carries(self.steps) }
     }
 
     /// As whole turns of u are left out of a step, it repeats after two steps at the soonest, and once more where it begins. And there
@@ -258,8 +261,8 @@ impl Needs {
         matches!(self.inputs, Inputs::Uv | Inputs::UvColor)
     }
 
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle.
+    /// Hands on the attributes in use, with the corners' values in I16F16 and their [kind](Needs::texel), 0 for colours, until one
+    /// returns false: u and v, then colours, of which there is one in a grey triangle.
     #[inline]
     pub(super) fn each_attribute(
         &self,
@@ -284,7 +287,7 @@ impl Needs {
                 1 => vertex.v.to_bits(),
                 _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
             };
-            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
+            set(i - first, vertices.map(at), if i < 2 { self.texel } else { 0 })
         })
     }
 }
@@ -401,23 +404,13 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
+        needs.each_attribute(triangle, self.gray, |i, at, kind| {
+            self.attributes[i] = self.attribute(&slopes, at, kind, &q, mixed);
             true
         });
-        if needs.has_texels() && is_exact {
+        if is_exact && needs.has_texels() {
             let (corners, sliver) = (self.corners, self.sliver);
             self.lean(triangle, needs, &|plane, rise| slopes.error(&corners, sliver, plane, rise));
-        } else if needs.has_texels() {
-            self.keep_inside(needs.packing.inset, self.straight);
-        }
-    }
-
-    /// Keeps texture coordinates that may not be exactly straight inside their range.
-    #[inline]
-    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
-        for attribute in self.attributes.iter_mut().take(2) {
-            attribute.keep_inside(inset, is_straight);
         }
     }
 
@@ -441,7 +434,7 @@ impl TriangleSetup {
         let [a, b, c] = self.corners.map(|[x, _]| x >> 4);
         let width = (a.max(b).max(c) - a.min(b).min(c)) as u32;
         let steps = width.min(packing.steps);
-        let texel = 0x10000 >> needs.texture_scale;
+        let texel = 0x10000 >> (needs.texel & 0xff);
         let mut carries = 0;
         for i in 0..2 {
             let at = triangle.vertices.map(|vertex| if i == 0 { vertex.u } else { vertex.v }.to_bits());
@@ -487,7 +480,10 @@ impl TriangleSetup {
     pub(super) fn straight_steps(&self, count: usize, [x, y]: [i32; 2], mut steps: i32) -> i32 {
         for attribute in self.attributes.iter().take(count) {
             let (value, step) = self.at(&attribute.plane, x, y);
-            while steps > 0 && value <= attribute.range && attribute.inside((value, step), steps).is_none() {
+            while steps > 0
+                && value <= attribute.range
+                && value.wrapping_add_signed(step.wrapping_mul(steps)) > attribute.range
+            {
                 steps >>= 1;
             }
         }
@@ -612,15 +608,8 @@ impl TriangleSetup {
     /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there; `mixed` for
     /// [`resolve_in_sliver`](Self::resolve_in_sliver).
     #[inline(never)]
-    fn attribute(
-        &self,
-        slopes: &Slopes,
-        at: [i32; 3],
-        scale_log2: u32,
-        q: &[u32; 3],
-        mixed: bool,
-    ) -> Attribute {
-        let (mut attribute, rise) = Attribute::between(at, scale_log2);
+    fn attribute(&self, slopes: &Slopes, at: [i32; 3], kind: u32, q: &[u32; 3], mixed: bool) -> Attribute {
+        let (mut attribute, rise) = Attribute::between(at, kind);
         if self.straight || mixed {
             let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
             attribute.plane = self.plane(slopes, origin, rise);

@@ -50,8 +50,8 @@ impl Slopes {
 
     /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
     #[inline(never)]
-    fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
-        let rise = attribute.set_range(*at, scale_log2);
+    fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], kind: u32) -> bool {
+        let rise = attribute.set_range(*at, kind);
         attribute.plane.origin = attribute.origin();
         self.set(&mut attribute.plane, rise[0], rise[1]);
         attribute.range < 1 << 27
@@ -153,8 +153,13 @@ impl TriangleSetup {
             }
             _ => {
                 self.straight = true;
-                self.leans = needs.is_exactly_straight(least, most);
-                self.set_linear(triangle, needs, &slopes)
+                if !self.set_linear(triangle, needs, &slopes) {
+                    return false;
+                }
+                if needs.is_exactly_straight(least, most) && needs.has_texels() {
+                    self.lean(triangle, needs, &|plane, rise| slopes.error(plane, rise));
+                }
+                true
             }
         }
     }
@@ -190,10 +195,10 @@ impl TriangleSetup {
     /// Whether attributes that are linear on the screen are good enough.
     #[inline(never)]
     fn are_straight(&self, triangle: &Oriented<'_>, needs: &Needs, bend: &Bend, limit: u32) -> bool {
-        needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
+        needs.each_attribute(triangle, self.gray, |_, [a, b, c], kind| {
             let rise = [b - a, c - a];
             (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
-                && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
+                && bend.is_straight_for(limit, rise, 0x10000 >> (kind & 0xff))
         })
     }
 
@@ -203,17 +208,9 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
-        let are_set = needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
-        });
-        if needs.has_texels() {
-            if self.leans {
-                self.lean(triangle, needs, &|plane, rise| slopes.error(plane, rise));
-            } else {
-                self.keep_inside(needs.packing.inset, true);
-            }
-        }
-        are_set
+        needs.each_attribute(triangle, self.gray, |i, at, kind| {
+            attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, kind))
+        })
     }
 
     /// Bends attributes, of which planes are set, as much as perspective does.
