@@ -40,22 +40,34 @@ impl Attribute {
 
     /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
     ///
-    /// The range ends an [inset](super::setup::Needs::texel) inside on both sides, as far as there is room. An attribute that is the
-    /// same at all corners stays what it is.
+    /// The range ends an [inset](super::setup::Needs::texel) inside on both sides.
     #[inline]
     pub(super) fn set_range(&mut self, at: [i32; 3], kind: u32) -> [i32; 2] {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        let mut inset = kind >> 8;
+        let inset = kind >> 8;
         let range = high.wrapping_sub(low) as u32;
         self.range = range.wrapping_sub(2 * inset);
-        if range < 2 * inset {
-            (self.range, inset) = (0, range >> 1);
-        }
         self.low = low.wrapping_add_unsigned(inset);
         self.least = at[0] + self.low;
         self.scale_log2 = kind & 0xff;
+        if range < 2 * inset {
+            self.narrow(range, kind);
+        }
         rise
+    }
+
+    /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
+    /// corners stays what it is. If it may be packed, which takes some inset, it is in the middle of its texel.
+    #[cold]
+    #[inline(never)]
+    fn narrow(&mut self, range: u32, kind: u32) {
+        let (inset, texel) = (kind >> 8, 0x10000 >> self.scale_log2);
+        self.least += (range >> 1) as i32 - inset as i32;
+        if inset > 1 {
+            self.least = (self.least & -texel) + texel / 2;
+        }
+        (self.low, self.range) = (0, 0);
     }
 
     /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.
@@ -153,7 +165,7 @@ impl Attribute {
 
     #[cold]
     #[inline(never)]
-    fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+    pub(super) fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
         let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
         (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
     }

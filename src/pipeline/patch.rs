@@ -72,17 +72,12 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let near_w_step = setup.z.steps[0];
         // Hidden, so that the compiler keeps one number.
         let longest = core::hint::black_box(setup.longest.min(fill.longest_row()));
-        let leans = setup.leans;
         let is_bent = setup.longest < STRAIGHT;
         let scale_log2 = attributes.first().map_or(0, |attribute| attribute.scale_log2);
         row = row.wrapping_add(x as usize);
         rows.each_simple([x, y], |n, mut m, end| {
             while m < end {
-                let mut steps = (end - m - 1).min(longest);
-                if leans {
-                    // Up to where it leaves its range an exact attribute stays so.
-                    steps = setup.straight_steps(N, [x + m, y + n], steps);
-                }
+                let steps = (end - m - 1).min(longest);
                 let (mut at, mut step) = ([0; N], [0; N]);
                 for (i, attribute) in attributes.iter().enumerate() {
                     let (mut value, mut right) = (values[i], attribute.plane.steps[0]);

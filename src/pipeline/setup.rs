@@ -244,7 +244,7 @@ impl Packing {
     /// Likewise, where u changes by no more than this.
     fn carries(&self, u_step: u32, steps: u32) -> u32 {
         let turns = ((u_step >> 8) * steps) >> (self.turn_log2 - 8);
-        (turns + 3).min(Self::most_carries(self.steps))
+        (turns + 3).min(Self::most_carries(steps))
     }
 }
 
@@ -433,7 +433,8 @@ impl TriangleSetup {
         let packing = &needs.packing;
         let [a, b, c] = self.corners.map(|[x, _]| x >> 4);
         let width = (a.max(b).max(c) - a.min(b).min(c)) as u32;
-        let steps = width.min(packing.steps);
+        // What is not small is drawn in shorter runs, of a large texture.
+        let steps = width.min(if !self.is_small && packing.steps == 15 { 7 } else { packing.steps });
         let texel = 0x10000 >> (needs.texel & 0xff);
         let mut carries = 0;
         for i in 0..2 {
@@ -443,13 +444,11 @@ impl TriangleSetup {
             if direction == 0 {
                 continue;
             }
-            let attribute = &mut self.attributes[i];
-            let mut behind = error_of(&mut attribute.plane, rise) + packing.unit * (1 + carries);
-            // Its steps are not those of a sliver's plane.
-            let step = if self.sliver { u32::MAX >> 1 } else { attribute.plane.steps[0].unsigned_abs() };
+            let mut plane = self.attributes[i].plane;
+            let mut behind = error_of(&mut plane, rise) + packing.unit * (1 + carries);
+            let step = self.at(&plane, a, self.corners[0][1] >> 4).1.unsigned_abs();
             behind += steps * (step & (packing.unit - 1));
-            attribute.plane.origin =
-                attribute.plane.origin.wrapping_add_signed(direction * (behind as i32 + 1));
+            plane.origin = plane.origin.wrapping_add_signed(direction * (behind as i32 + 1));
             let (mut least, mut most) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
             let room = (carries * packing.unit) as i32;
             if least & (texel - 1) < room {
@@ -458,7 +457,8 @@ impl TriangleSetup {
             if most & (texel - 1) >= texel - room {
                 most -= room;
             }
-            attribute.limit(least, most.max(least));
+            self.attributes[i].plane = plane;
+            self.attributes[i].limit(least, most.max(least));
             carries = packing.carries(step, steps);
         }
     }
