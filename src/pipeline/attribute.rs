@@ -32,42 +32,53 @@ impl Attribute {
 
     /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
     #[inline]
-    pub(super) fn between(at: [i32; 3], kind: u32) -> (Self, [i32; 2]) {
+    pub(super) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
         let mut attribute = Self::default();
-        let rise = attribute.set_range(at, kind);
+        let rise = attribute.set_range(at, scale_log2);
         (attribute, rise)
     }
 
     /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
-    ///
-    /// The range ends an [inset](super::setup::Needs::texel) inside on both sides.
     #[inline]
-    pub(super) fn set_range(&mut self, at: [i32; 3], kind: u32) -> [i32; 2] {
+    pub(super) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
         let rise = [at[1] - at[0], at[2] - at[0]];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        let inset = kind >> 8;
-        let range = high.wrapping_sub(low) as u32;
-        self.range = range.wrapping_sub(2 * inset);
-        self.low = low.wrapping_add_unsigned(inset);
-        self.least = at[0] + self.low;
-        self.scale_log2 = kind & 0xff;
-        if range < 2 * inset {
-            self.narrow(range, kind);
-        }
+        self.least = at[0] + low;
+        self.low = low;
+        self.range = high.wrapping_sub(low) as u32;
+        self.scale_log2 = scale_log2;
         rise
+    }
+
+    /// Makes a texture coordinate's range end an `inset` inside on both sides.
+    #[inline]
+    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
+        let range = self.range;
+        if range < 2 * inset {
+            return self.keep_amid(inset, is_straight);
+        }
+        self.range = range - 2 * inset;
+        self.least = self.least.wrapping_add_unsigned(inset);
+        self.low = self.low.wrapping_add_unsigned(inset);
+        if is_straight {
+            self.plane.origin = self.plane.origin.wrapping_sub(inset);
+        }
     }
 
     /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
     /// corners stays what it is. If it may be packed, which takes some inset, it is in the middle of its texel.
     #[cold]
     #[inline(never)]
-    fn narrow(&mut self, range: u32, kind: u32) {
-        let (inset, texel) = (kind >> 8, 0x10000 >> self.scale_log2);
-        self.least += (range >> 1) as i32 - inset as i32;
+    fn keep_amid(&mut self, inset: u32, is_straight: bool) {
+        let texel = 0x10000 >> self.scale_log2;
+        self.least += (self.range >> 1) as i32;
         if inset > 1 {
             self.least = (self.least & -texel) + texel / 2;
         }
         (self.low, self.range) = (0, 0);
+        if is_straight {
+            self.plane = Plane::default();
+        }
     }
 
     /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.

@@ -3,7 +3,7 @@
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::{Coloring, dim};
 use super::setup::{Cull, Needs, Oriented, Packing, TriangleSetup, area, position};
-use super::shade::{Quality, Shader};
+use super::shade::{Inputs, Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
 use super::straight::Straight;
@@ -325,11 +325,13 @@ pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
 ) -> Needs {
     let texture_scale = shader.texture_scale().min(8);
     let packing = Packing::new(shader.packed_log2(), texture_scale);
+    let inputs = shader.inputs();
     Needs {
-        inputs: shader.inputs(),
+        inputs,
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
-        texel: texture_scale | packing.inset() << 8,
+        texture_scale,
+        inset: if matches!(inputs, Inputs::Uv | Inputs::UvColor) { packing.inset() } else { 0 },
         packing,
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,

@@ -198,10 +198,12 @@ pub(super) struct Needs {
     pub(super) straight: Straight,
     /// Whether it divides at every pixel.
     pub(super) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8. Behind the lower 8 bits is how far from the ends of their range they stay, I16F16,
-    /// if they may not be [exactly straight](TriangleSetup::lean): as far as [packing](Packing) can take them.
-    pub(super) texel: u32,
+    /// u and v are multiplied by 2^this, 0 … 8.
+    pub(super) texture_scale: u32,
     pub(super) packing: Packing,
+    /// How far from the ends of their range u and v stay if they may not be [exactly straight](TriangleSetup::lean), I16F16: as far as
+    /// [packing](Packing) can take them, and 1 at least. 0 if they are not among the inputs.
+    pub(super) inset: u32,
     /// Whether depth is tested.
     pub(super) depth: bool,
     /// Whether all colours are known to be grey.
@@ -255,14 +257,8 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
-    /// Whether u and v are among the attributes: they come first.
-    #[inline]
-    pub(super) fn has_texels(&self) -> bool {
-        matches!(self.inputs, Inputs::Uv | Inputs::UvColor)
-    }
-
-    /// Hands on the attributes in use, with the corners' values in I16F16 and their [kind](Needs::texel), 0 for colours, until one
-    /// returns false: u and v, then colours, of which there is one in a grey triangle.
+    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
+    /// v, then colours, of which there is one in a grey triangle.
     #[inline]
     pub(super) fn each_attribute(
         &self,
@@ -287,7 +283,7 @@ impl Needs {
                 1 => vertex.v.to_bits(),
                 _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
             };
-            set(i - first, vertices.map(at), if i < 2 { self.texel } else { 0 })
+            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
         })
     }
 }
@@ -367,6 +363,9 @@ impl TriangleSetup {
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
         }
+        if needs.inset > 0 && !self.leans {
+            self.keep_inside(needs.inset);
+        }
     }
 
     #[inline(never)]
@@ -404,13 +403,21 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
-        needs.each_attribute(triangle, self.gray, |i, at, kind| {
-            self.attributes[i] = self.attribute(&slopes, at, kind, &q, mixed);
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-        if is_exact && needs.has_texels() {
+        if is_exact && needs.inset > 0 {
             let (corners, sliver) = (self.corners, self.sliver);
             self.lean(triangle, needs, &|plane, rise| slopes.error(&corners, sliver, plane, rise));
+        }
+    }
+
+    /// Makes the range of u and v end an `inset` inside on both sides, where they may not be exactly straight.
+    #[inline(never)]
+    fn keep_inside(&mut self, inset: u32) {
+        for attribute in self.attributes.iter_mut().take(2) {
+            attribute.keep_inside(inset, self.straight);
         }
     }
 
@@ -435,13 +442,14 @@ impl TriangleSetup {
         let width = (a.max(b).max(c) - a.min(b).min(c)) as u32;
         // What is not small is drawn in shorter runs, of a large texture.
         let steps = width.min(if !self.is_small && packing.steps == 15 { 7 } else { packing.steps });
-        let texel = 0x10000 >> (needs.texel & 0xff);
+        let texel = 0x10000 >> needs.texture_scale;
         let mut carries = 0;
         for i in 0..2 {
             let at = triangle.vertices.map(|vertex| if i == 0 { vertex.u } else { vertex.v }.to_bits());
             let rise = [at[1] - at[0], at[2] - at[0]];
             let direction = direction(&edges(&self.corners), rise);
             if direction == 0 {
+                self.attributes[i].keep_inside(needs.inset, true);
                 continue;
             }
             let mut plane = self.attributes[i].plane;
@@ -608,8 +616,15 @@ impl TriangleSetup {
     /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there; `mixed` for
     /// [`resolve_in_sliver`](Self::resolve_in_sliver).
     #[inline(never)]
-    fn attribute(&self, slopes: &Slopes, at: [i32; 3], kind: u32, q: &[u32; 3], mixed: bool) -> Attribute {
-        let (mut attribute, rise) = Attribute::between(at, kind);
+    fn attribute(
+        &self,
+        slopes: &Slopes,
+        at: [i32; 3],
+        scale_log2: u32,
+        q: &[u32; 3],
+        mixed: bool,
+    ) -> Attribute {
+        let (mut attribute, rise) = Attribute::between(at, scale_log2);
         if self.straight || mixed {
             let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
             attribute.plane = self.plane(slopes, origin, rise);

@@ -50,8 +50,8 @@ impl Slopes {
 
     /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
     #[inline(never)]
-    fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], kind: u32) -> bool {
-        let rise = attribute.set_range(*at, kind);
+    fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
+        let rise = attribute.set_range(*at, scale_log2);
         attribute.plane.origin = attribute.origin();
         self.set(&mut attribute.plane, rise[0], rise[1]);
         attribute.range < 1 << 27
@@ -156,7 +156,7 @@ impl TriangleSetup {
                 if !self.set_linear(triangle, needs, &slopes) {
                     return false;
                 }
-                if needs.is_exactly_straight(least, most) && needs.has_texels() {
+                if needs.is_exactly_straight(least, most) && needs.inset > 0 {
                     self.lean(triangle, needs, &|plane, rise| slopes.error(plane, rise));
                 }
                 true
@@ -195,10 +195,10 @@ impl TriangleSetup {
     /// Whether attributes that are linear on the screen are good enough.
     #[inline(never)]
     fn are_straight(&self, triangle: &Oriented<'_>, needs: &Needs, bend: &Bend, limit: u32) -> bool {
-        needs.each_attribute(triangle, self.gray, |_, [a, b, c], kind| {
+        needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
             let rise = [b - a, c - a];
             (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
-                && bend.is_straight_for(limit, rise, 0x10000 >> (kind & 0xff))
+                && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
         })
     }
 
@@ -208,8 +208,8 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
-        needs.each_attribute(triangle, self.gray, |i, at, kind| {
-            attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, kind))
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            attributes.get_mut(i).is_some_and(|attribute| slopes.set_attribute(attribute, &at, scale_log2))
         })
     }
 
