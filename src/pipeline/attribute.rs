@@ -50,35 +50,42 @@ impl Attribute {
         rise
     }
 
-    /// Makes a texture coordinate's range end an `inset` inside on both sides.
+    /// Makes the range of a texture coordinate end an `inset` inside on both sides.
     #[inline]
-    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
+    pub(super) fn keep_inside(&mut self, inset: u32) {
         let range = self.range;
         if range < 2 * inset {
-            return self.keep_amid(inset, is_straight);
+            return self.keep_amid(inset);
         }
         self.range = range - 2 * inset;
         self.least = self.least.wrapping_add_unsigned(inset);
         self.low = self.low.wrapping_add_unsigned(inset);
-        if is_straight {
-            self.plane.origin = self.plane.origin.wrapping_sub(inset);
+    }
+
+    /// As [`Attribute::keep_inside`], of a straight triangle.
+    #[inline]
+    pub(super) fn keep_straight_inside(&mut self, inset: u32) {
+        let range = self.range;
+        if range < 2 * inset {
+            self.plane = Plane::default();
+            return self.keep_amid(inset);
         }
+        self.range = range - 2 * inset;
+        self.least = self.least.wrapping_add_unsigned(inset);
+        self.plane.origin = self.plane.origin.wrapping_sub(inset);
     }
 
     /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
     /// corners stays what it is. If it may be packed, which takes some inset, it is in the middle of its texel.
     #[cold]
     #[inline(never)]
-    fn keep_amid(&mut self, inset: u32, is_straight: bool) {
+    fn keep_amid(&mut self, inset: u32) {
         let texel = 0x10000 >> self.scale_log2;
         self.least += (self.range >> 1) as i32;
         if inset > 1 {
             self.least = (self.least & -texel) + texel / 2;
         }
         (self.low, self.range) = (0, 0);
-        if is_straight {
-            self.plane = Plane::default();
-        }
     }
 
     /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.

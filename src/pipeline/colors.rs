@@ -289,7 +289,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
             );
         }
         let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         let first = packed_from([u >> a, v >> b], u_step);
         let plus = |light: C| light.plus(light_step);
         row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {

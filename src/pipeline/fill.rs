@@ -276,7 +276,7 @@ impl<F: PixelFormat> Fill<2> for Texels<'_, F> {
             return row.draw(at, |at| plus(at, step), |at| self.pixel(at));
         }
         let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
+        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
         let first = packed_from([u >> a, v >> b], u_step);
         row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
     }

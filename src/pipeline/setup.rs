@@ -202,7 +202,8 @@ pub(super) struct Needs {
     pub(super) texture_scale: u32,
     pub(super) packing: Packing,
     /// How far from the ends of their range u and v stay if they may not be [exactly straight](TriangleSetup::lean), I16F16: as far as
-    /// [packing](Packing) can take them, and 1 at least. 0 if they are not among the inputs.
+    /// [carries](Packing) can take v in a small triangle, which is half as far as elsewhere, and 1 at least. 0 if they are not among
+    /// the inputs.
     pub(super) inset: u32,
     /// Whether depth is tested.
     pub(super) depth: bool,
@@ -232,9 +233,9 @@ impl Packing {
         Self { unit, steps, turn_log2: 16 + a - scale_log2 }
     }
 
-    /// How far the most carries can take v, at least 1.
+    /// How far carries can take v where u does not repeat within four pixels, at least 1.
     pub(super) fn inset(&self) -> u32 {
-        if self.steps == 0 { 1 } else { self.unit * Self::most_carries(self.steps) }
+        if self.steps == 0 { 1 } else { self.unit * (self.steps / 4 + 3) }
     }
 
     /// As whole turns of u are left out of a step, it repeats after two steps at the soonest, and once more where it begins. And there
@@ -362,10 +363,38 @@ impl TriangleSetup {
         }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
+        } else if needs.inset > 0 && !self.leans {
+            self.keep_small_inside(needs);
         }
-        if needs.inset > 0 && !self.leans {
-            self.keep_inside(needs.inset);
+    }
+
+    /// Makes the range of a small triangle's u and v end a little inside on both sides, where they may not be exactly straight.
+    #[inline(never)]
+    fn keep_small_inside(&mut self, needs: &Needs) {
+        let [u, v, ..] = &mut self.attributes;
+        if u.plane.steps[0].unsigned_abs() >> (needs.packing.turn_log2 - 2) != 0 {
+            return self.keep_steep_inside(needs);
         }
+        u.keep_straight_inside(needs.inset);
+        v.keep_straight_inside(needs.inset);
+    }
+
+    /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels: so often that v had better not be stepped.
+    #[cold]
+    #[inline(never)]
+    fn keep_steep_inside(&mut self, needs: &Needs) {
+        self.step_singly();
+        for attribute in self.attributes.iter_mut().take(2) {
+            attribute.keep_straight_inside(2 * needs.inset);
+        }
+    }
+
+    /// Makes rows of a small triangle begin anew at every pixel.
+    fn step_singly(&mut self) {
+        if self.longest == STRAIGHT {
+            self.attributes.iter_mut().for_each(|attribute| attribute.bend = [0; 3]);
+        }
+        self.longest = 0;
     }
 
     #[inline(never)]
@@ -407,17 +436,18 @@ impl TriangleSetup {
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-        if is_exact && needs.inset > 0 {
+        if needs.inset == 0 {
+        } else if is_exact {
             let (corners, sliver) = (self.corners, self.sliver);
             self.lean(triangle, needs, &|plane, rise| slopes.error(&corners, sliver, plane, rise));
-        }
-    }
-
-    /// Makes the range of u and v end an `inset` inside on both sides, where they may not be exactly straight.
-    #[inline(never)]
-    fn keep_inside(&mut self, inset: u32) {
-        for attribute in self.attributes.iter_mut().take(2) {
-            attribute.keep_inside(inset, self.straight);
+        } else {
+            for attribute in self.attributes.iter_mut().take(2) {
+                if self.straight {
+                    attribute.keep_straight_inside(2 * needs.inset);
+                } else {
+                    attribute.keep_inside(2 * needs.inset);
+                }
+            }
         }
     }
 
@@ -449,7 +479,7 @@ impl TriangleSetup {
             let rise = [at[1] - at[0], at[2] - at[0]];
             let direction = direction(&edges(&self.corners), rise);
             if direction == 0 {
-                self.attributes[i].keep_inside(needs.inset, true);
+                self.attributes[i].keep_straight_inside(needs.inset);
                 continue;
             }
             let mut plane = self.attributes[i].plane;
@@ -468,6 +498,9 @@ impl TriangleSetup {
             self.attributes[i].plane = plane;
             self.attributes[i].limit(least, most.max(least));
             carries = packing.carries(step, steps);
+            if step >> (packing.turn_log2 - 2) != 0 {
+                self.step_singly();
+            }
         }
     }
 
