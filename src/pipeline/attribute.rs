@@ -153,6 +153,12 @@ impl Attribute {
         self.least.wrapping_add_unsigned(above)
     }
 
+    /// Of a straight triangle: whether its plane's value is within the range, and no more `steps` further.
+    #[inline]
+    pub(super) fn leaves(&self, (value, step): (u32, i32), steps: i32) -> bool {
+        value <= self.range && value.wrapping_add_signed(step.wrapping_mul(steps)) > self.range
+    }
+
     /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
     /// outside the corners' range, even where rounding takes the plane there.
     #[inline]

@@ -111,20 +111,25 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// Moves a step to the nearest multiple of 2⁻¹² if that is within its error, and returns by how much.
+    /// Moves each step to the nearest multiple of 2⁻¹² if that is within its error, or 2⁻¹⁶ of it more; around a corner.
     ///
     /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
     /// coordinates at every pixel.
-    #[inline]
-    pub(super) fn snap(&mut self, axis: usize, pixel: i32, error: u32) -> i32 {
-        let step = self.steps[axis];
-        let change = (step.wrapping_add(8) & !15).wrapping_sub(step);
-        if change.unsigned_abs() > error {
-            return 0;
+    fn snap(&mut self, corner: &[i32; 2], error: u32) {
+        for (step, at) in self.steps.iter_mut().zip(corner) {
+            let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
+            if error > 0 && change.unsigned_abs() <= error + (step.unsigned_abs() >> 16) {
+                *step = step.wrapping_add(change);
+                self.origin = self.origin.wrapping_sub((at >> 4).wrapping_mul(change) as u32);
+            }
         }
-        self.steps[axis] = step.wrapping_add(change);
-        self.origin = self.origin.wrapping_sub(pixel.wrapping_mul(change) as u32);
-        change
+    }
+
+    /// By how much what it says at a corner (1/16 px) is above the value there, in 1/16.
+    fn error_at(&self, corner: &[i32; 2], value: i32) -> i32 {
+        let [right, down] = self.steps;
+        let way = right.wrapping_mul(corner[0] - 8).wrapping_add(down.wrapping_mul(corner[1] - 8));
+        ((self.origin.wrapping_sub(value as u32) << 4) as i32).wrapping_add(way)
     }
 }
 
@@ -137,8 +142,8 @@ struct Slopes {
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
     to_center: [i32; 2],
-    /// From that pixel to the nearest on the screen.
-    to_screen: [i32; 2],
+    /// From that pixel to the middle of what is within the screen.
+    to_middle: [i32; 2],
 }
 
 impl Slopes {
@@ -148,47 +153,6 @@ impl Slopes {
     fn slope(&self, axis: usize, rise: [i32; 2]) -> i32 {
         let [b, c] = self.of_weights[axis];
         mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c))
-    }
-
-    /// How far behind a value that rises so from corner 0 to 1 and 2 its plane may be, in the [`direction`] of the value's change.
-    ///
-    /// The plane begins at corner 0's pixel, or where the screen does. From there on it is off by what rounding took from a step, at
-    /// every column and row: that is known, and so is where it is worst. Beside that there are three units of a slope (below [the
-    /// head](self)), and 16 units of what lies between the corner and its pixel's centre. A sliver's plane is exact to 4 units where a
-    /// run begins, and its step to half a unit.
-    #[cold]
-    #[inline(never)]
-    fn error(&self, corners: &[[i32; 2]; 3], sliver: bool, plane: &mut Plane, rise: [i32; 2]) -> u32 {
-        let direction = direction(&edges(corners), rise);
-        let mut error = 24;
-        for axis in 0..2 {
-            let [a, b, c] = corners.map(|corner| corner[axis] >> 4);
-            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
-            if sliver {
-                error += (last - first).min(1023) >> 1;
-                continue;
-            }
-            // What may be seen of it is not wider and higher than a screen. How far that goes in the direction.
-            let ends = [first.max((last - 1023).min(0)), last.min(1023)];
-            let most = |from: i32, rate: i32| (rate * (ends[0] - from)).max(rate * (ends[1] - from)).max(0);
-            let (bits, pixel) = (self.fraction_bits, self.pixel[axis]);
-            let uncertain = most(pixel, 3 * direction);
-            error += 2 + if bits < 0 { uncertain << (-bits & 31) } else { uncertain >> bits };
-            let snapped = if bits < 3 {
-                plane.snap(axis, pixel, 2 + ((3 << 12) >> (bits + 12).max(0)) as u32)
-            } else {
-                0
-            };
-            if bits <= 0 {
-                error += most(pixel, -snapped * direction);
-                continue;
-            }
-            // With 12 bits, times at most 2047.
-            let rest = self.slope(axis, rise).wrapping_sub(plane.steps[axis] << bits);
-            let rest = if bits > 12 { rest >> (bits - 12) } else { rest << (12 - bits) };
-            error += most(pixel + self.to_screen[axis], rest * direction) >> 12;
-        }
-        error as u32
     }
 }
 
@@ -438,8 +402,7 @@ impl TriangleSetup {
         });
         if needs.inset == 0 {
         } else if is_exact {
-            let (corners, sliver) = (self.corners, self.sliver);
-            self.lean(triangle, needs, &|plane, rise| slopes.error(&corners, sliver, plane, rise));
+            self.lean_large(triangle, needs, slopes.fraction_bits);
         } else {
             for attribute in self.attributes.iter_mut().take(2) {
                 if self.straight {
@@ -451,21 +414,38 @@ impl TriangleSetup {
         }
     }
 
+    /// As [`TriangleSetup::lean`], of one that is not small.
+    ///
+    /// A plane is off by half a unit at every column and row from its middle on, by three units of a slope from corner 0 on, and by 20
+    /// where it begins.
+    #[cold]
+    fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: i32) {
+        let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
+        if self.sliver {
+            return self.lean(triangle, needs, 0, 24 + (width >> 1));
+        }
+        let bits = fraction_bits;
+        let slope_error =
+            |count: i32| 1 + if bits < 0 { (3 * count) << (-bits & 31) } else { (3 * count) >> bits };
+        let slack = if fraction_bits < 3 { 2 + slope_error(1) as u32 } else { 0 };
+        self.lean(triangle, needs, slack, 20 + ((width + height) >> 2) + slope_error(4096));
+    }
+
     /// Makes exactly straight texture coordinates lean in the direction of the change that decides of which texel a whole coordinate
-    /// is (see [`direction`]): by as much as their plane, of which `error_of` tells, and the run that is drawn from it may be behind.
-    /// So a coordinate that is whole at a pixel's centre is never taken for the texel on the wrong side.
+    /// is (see [`direction`]): by as much as their plane, and a run that is drawn from it, may be behind. So a coordinate that is whole
+    /// at a pixel's centre is never taken for the texel on the wrong side.
+    ///
+    /// What a plane is off by is linear too, so nowhere worse than at one of the corners, where it is known: `most` is what it may be
+    /// within the screen. (A sliver's plane is exact to 4 units where a run begins, and its step to half a unit: `most`.)
     ///
     /// A run of packed coordinates is behind by what they are rounded down to at its first pixel, by what its step is cut to, at every
     /// further pixel, and v by the carries of u, which may put it ahead, too. So v stays that far from the border between two texels
     /// where the end of its range lies close to one; which texels it shows does not depend on that.
+    ///
+    /// A step that may be off by `slack` is [taken for](Plane::snap) the one of a sprite.
     #[cold]
     #[inline(never)]
-    pub(super) fn lean(
-        &mut self,
-        triangle: &Oriented<'_>,
-        needs: &Needs,
-        error_of: &dyn Fn(&mut Plane, [i32; 2]) -> u32,
-    ) {
+    pub(super) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
         self.leans = true;
         let packing = &needs.packing;
         let [a, b, c] = self.corners.map(|[x, _]| x >> 4);
@@ -476,27 +456,33 @@ impl TriangleSetup {
         let mut carries = 0;
         for i in 0..2 {
             let at = triangle.vertices.map(|vertex| if i == 0 { vertex.u } else { vertex.v }.to_bits());
-            let rise = [at[1] - at[0], at[2] - at[0]];
-            let direction = direction(&edges(&self.corners), rise);
+            let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
+            let attribute = &mut self.attributes[i];
             if direction == 0 {
-                self.attributes[i].keep_straight_inside(needs.inset);
+                attribute.keep_straight_inside(needs.inset);
                 continue;
             }
-            let mut plane = self.attributes[i].plane;
-            let mut behind = error_of(&mut plane, rise) + packing.unit * (1 + carries);
+            let mut plane = attribute.plane;
+            let mut behind = most;
+            if !self.sliver {
+                plane.snap(&self.corners[0], slack);
+                let error =
+                    |k: usize| (direction * plane.error_at(&self.corners[k], at[k] - attribute.least)) >> 4;
+                behind = behind.min(-error(0).min(error(1)).min(error(2)).min(0));
+            }
             let step = self.at(&plane, a, self.corners[0][1] >> 4).1.unsigned_abs();
-            behind += steps * (step & (packing.unit - 1));
-            plane.origin = plane.origin.wrapping_add_signed(direction * (behind as i32 + 1));
-            let (mut least, mut most) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
+            behind += (packing.unit * (1 + carries) + steps * (step & (packing.unit - 1))) as i32;
+            plane.origin = plane.origin.wrapping_add_signed(direction * (behind + 1));
+            let (mut least, mut greatest) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
             let room = (carries * packing.unit) as i32;
             if least & (texel - 1) < room {
                 least += room;
             }
-            if most & (texel - 1) >= texel - room {
-                most -= room;
+            if greatest & (texel - 1) >= texel - room {
+                greatest -= room;
             }
             self.attributes[i].plane = plane;
-            self.attributes[i].limit(least, most.max(least));
+            self.attributes[i].limit(least, greatest.max(least));
             carries = packing.carries(step, steps);
             if step >> (packing.turn_log2 - 2) != 0 {
                 self.step_singly();
@@ -512,23 +498,6 @@ impl TriangleSetup {
             return self.at_in_sliver(plane, x, y);
         }
         (plane.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down))), right)
-    }
-
-    /// Along how many of `steps` steps to the right the first so many attributes of a straight triangle stay within their range, or
-    /// the one that is outside does not come back.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn straight_steps(&self, count: usize, [x, y]: [i32; 2], mut steps: i32) -> i32 {
-        for attribute in self.attributes.iter().take(count) {
-            let (value, step) = self.at(&attribute.plane, x, y);
-            while steps > 0
-                && value <= attribute.range
-                && value.wrapping_add_signed(step.wrapping_mul(steps)) > attribute.range
-            {
-                steps >>= 1;
-            }
-        }
-        steps
     }
 
     /// By weights: exact edge functions times 1/area.
@@ -589,6 +558,13 @@ impl TriangleSetup {
         })
     }
 
+    /// The first and the last column or row of it within the screen, or as much of it as the screen has.
+    fn extent(&self, axis: usize) -> [i32; 2] {
+        let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+        let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+        [first.max((last - 1023).min(0)), last.min(1023)]
+    }
+
     /// Finds out whether it is a sliver, too.
     fn slopes(&mut self, area: u32) -> Slopes {
         let (edges, a) = (edges(&self.corners), self.corners[0]);
@@ -607,7 +583,10 @@ impl TriangleSetup {
             fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
-            to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
+            to_middle: [0, 1].map(|axis| {
+                let [first, last] = self.extent(axis);
+                ((first + last) >> 1) - pixel[axis]
+            }),
         }
     }
 
@@ -623,14 +602,14 @@ impl TriangleSetup {
             let bits = slopes.fraction_bits;
             let (step, rest) = if bits > 0 {
                 let step = ((slope >> (bits - 1)) + 1) >> 1;
-                // What rounding leaves, with at most 12 of its bits, over as far as the screen is away.
+                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
                 let rest = slope.wrapping_sub(step << bits);
                 (
                     step,
                     if bits > 12 {
-                        ((rest >> (bits - 12)) * slopes.to_screen[axis]) >> 12
+                        ((rest >> (bits - 12)) * slopes.to_middle[axis]) >> 12
                     } else {
-                        (rest * slopes.to_screen[axis]) >> bits
+                        (rest * slopes.to_middle[axis]) >> bits
                     },
                 )
             } else {
@@ -682,15 +661,16 @@ pub(super) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
 
 /// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
 /// any point, and infinitely less below that: as in the top-left rule. Exact.
-#[inline(never)]
-pub(super) fn direction(edges: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
-    let mut direction = 0;
-    for [b, c] in edges {
-        if direction == 0 {
-            direction = (wide(rise[0], *b) + wide(rise[1], *c)).signum() as i32;
-        }
+pub(super) fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
+    match sign_of_sum(right, rise) {
+        0 => sign_of_sum(down, rise),
+        sign => sign,
     }
-    direction
+}
+
+#[inline(never)]
+fn sign_of_sum([b, c]: &[i32; 2], rise: [i32; 2]) -> i32 {
+    (wide(rise[0], *b) + wide(rise[1], *c)).signum() as i32
 }
 
 pub(super) fn position(vertex: &ScreenVertex) -> [i32; 2] {

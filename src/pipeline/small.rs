@@ -84,33 +84,6 @@ impl Slopes {
     }
 }
 
-impl Slopes {
-    /// How far behind a value that rises so from corner 0 to 1 and 2 its plane may be. In units:
-    ///
-    /// - 2⁻¹⁶·⁸ of a step from the reciprocal, at 64 columns and rows: 2⁻¹⁰ of one step to the right and one down;
-    /// - 1 from rounding a step, at every column and row; where a step is shifted up, 2^shift, which is 64 over all columns or rows
-    ///   of a triangle as small as that;
-    /// - 8 from the corner to its pixel's centre, for columns and for rows;
-    /// - where rises have lost bits, 2⁸ for these and 2⁷ for the last bit of their products;
-    /// - what a step is moved by, at every column and row, to [the multiple](Plane::snap) that it may be.
-    #[cold]
-    #[inline(never)]
-    fn error(&self, plane: &mut Plane, rise: [i32; 2]) -> u32 {
-        let size = rise[0].unsigned_abs() | rise[1].unsigned_abs();
-        let largest = self.edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
-        let mut error = 24 + if size < 1 << 19 { largest >> 3 } else { 128 };
-        if size >= 1 << 19 && (rise[0] | rise[1]) & 0xff != 0 {
-            error += 384;
-        }
-        for axis in 0..2 {
-            let step = plane.steps[axis].unsigned_abs();
-            let change = plane.snap(axis, self.pixel[axis], 2 + (step >> 16));
-            error += (step >> 10) + change.unsigned_abs() * ((largest >> 4) + 2);
-        }
-        error
-    }
-}
-
 impl TriangleSetup {
     /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
     #[inline(never)]
@@ -157,7 +130,7 @@ impl TriangleSetup {
                     return false;
                 }
                 if needs.is_exactly_straight(least, most) && needs.inset > 0 {
-                    self.lean(triangle, needs, &|plane, rise| slopes.error(plane, rise));
+                    self.lean(triangle, needs, 2, i32::MAX);
                 }
                 true
             }
