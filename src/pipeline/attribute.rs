@@ -50,19 +50,7 @@ impl Attribute {
         rise
     }
 
-    /// Makes the range of a texture coordinate end an `inset` inside on both sides.
-    #[inline]
-    pub(super) fn keep_inside(&mut self, inset: u32) {
-        let range = self.range;
-        if range < 2 * inset {
-            return self.keep_amid(inset);
-        }
-        self.range = range - 2 * inset;
-        self.least = self.least.wrapping_add_unsigned(inset);
-        self.low = self.low.wrapping_add_unsigned(inset);
-    }
-
-    /// As [`Attribute::keep_inside`], of a straight triangle.
+    /// Makes the range of a straight triangle's texture coordinate end an `inset` inside on both sides.
     #[inline]
     pub(super) fn keep_straight_inside(&mut self, inset: u32) {
         let range = self.range;
@@ -73,6 +61,18 @@ impl Attribute {
         self.range = range - 2 * inset;
         self.least = self.least.wrapping_add_unsigned(inset);
         self.plane.origin = self.plane.origin.wrapping_sub(inset);
+    }
+
+    /// Likewise, of any triangle.
+    #[inline(never)]
+    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
+        let low = self.low;
+        let origin = self.plane.origin;
+        self.keep_straight_inside(inset);
+        self.low = low.wrapping_add_unsigned(inset);
+        if !is_straight {
+            self.plane.origin = origin;
+        }
     }
 
     /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all

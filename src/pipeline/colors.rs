@@ -128,7 +128,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         C::place(at).word::<F>()
     }
 
-    #[inline]
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
         let packed_step = C::step(step);
         let run = |pixels: &mut [F::Word], at: [i32; M]| {

@@ -26,7 +26,9 @@ pub trait Fill<const N: usize> {
     fn pixel(&self, at: [i32; N]) -> Self::Word;
 
     /// Any number of pixels side by side, the first at `at`, each `step` further.
-    #[inline]
+    ///
+    /// Not inlined, here and in others: two functions have it.
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [Self::Word], mut at: [i32; N], step: [i32; N]) {
         for pixel in pixels {
             *pixel = self.pixel(at);

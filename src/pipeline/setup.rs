@@ -126,6 +126,7 @@ impl Plane {
     }
 
     /// By how much what it says at a corner (1/16 px) is above the value there, in 1/16.
+    #[inline(never)]
     fn error_at(&self, corner: &[i32; 2], value: i32) -> i32 {
         let [right, down] = self.steps;
         let way = right.wrapping_mul(corner[0] - 8).wrapping_add(down.wrapping_mul(corner[1] - 8));
@@ -188,6 +189,7 @@ pub(super) struct Packing {
 
 impl Packing {
     /// Of a texture with sides of these log₂.
+    #[inline(never)]
     pub(super) fn new(log2: Option<[u32; 2]>, scale_log2: u32) -> Self {
         let Some([a, b]) = log2 else {
             return Self { unit: 1, steps: 0, turn_log2: 31 };
@@ -348,9 +350,9 @@ impl TriangleSetup {
     #[inline(never)]
     fn keep_steep_inside(&mut self, needs: &Needs) {
         self.step_singly();
-        for attribute in self.attributes.iter_mut().take(2) {
-            attribute.keep_straight_inside(2 * needs.inset);
-        }
+        let [u, v, ..] = &mut self.attributes;
+        u.keep_inside(2 * needs.inset, true);
+        v.keep_inside(2 * needs.inset, true);
     }
 
     /// Makes rows of a small triangle begin anew at every pixel.
@@ -400,17 +402,20 @@ impl TriangleSetup {
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-        if needs.inset == 0 {
-        } else if is_exact {
-            self.lean_large(triangle, needs, slopes.fraction_bits);
-        } else {
-            for attribute in self.attributes.iter_mut().take(2) {
-                if self.straight {
-                    attribute.keep_straight_inside(2 * needs.inset);
-                } else {
-                    attribute.keep_inside(2 * needs.inset);
-                }
-            }
+        if needs.inset > 0 {
+            self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
+        }
+    }
+
+    /// Makes u and v of what is not small lean if they are exactly straight, or stay a little inside their range.
+    #[inline(never)]
+    fn settle(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: Option<i32>) {
+        if let Some(fraction_bits) = fraction_bits {
+            return self.lean_large(triangle, needs, fraction_bits);
+        }
+        let [u, v, ..] = &mut self.attributes;
+        for attribute in [u, v] {
+            attribute.keep_inside(2 * needs.inset, self.straight);
         }
     }
 
@@ -447,47 +452,63 @@ impl TriangleSetup {
     #[inline(never)]
     pub(super) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
         self.leans = true;
-        let packing = &needs.packing;
-        let [a, b, c] = self.corners.map(|[x, _]| x >> 4);
-        let width = (a.max(b).max(c) - a.min(b).min(c)) as u32;
-        // What is not small is drawn in shorter runs, of a large texture.
-        let steps = width.min(if !self.is_small && packing.steps == 15 { 7 } else { packing.steps });
-        let texel = 0x10000 >> needs.texture_scale;
-        let mut carries = 0;
-        for i in 0..2 {
-            let at = triangle.vertices.map(|vertex| if i == 0 { vertex.u } else { vertex.v }.to_bits());
-            let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
-            let attribute = &mut self.attributes[i];
-            if direction == 0 {
-                attribute.keep_straight_inside(needs.inset);
-                continue;
-            }
-            let mut plane = attribute.plane;
-            let mut behind = most;
-            if !self.sliver {
-                plane.snap(&self.corners[0], slack);
-                let error =
-                    |k: usize| (direction * plane.error_at(&self.corners[k], at[k] - attribute.least)) >> 4;
-                behind = behind.min(-error(0).min(error(1)).min(error(2)).min(0));
-            }
-            let step = self.at(&plane, a, self.corners[0][1] >> 4).1.unsigned_abs();
-            behind += (packing.unit * (1 + carries) + steps * (step & (packing.unit - 1))) as i32;
-            plane.origin = plane.origin.wrapping_add_signed(direction * (behind + 1));
-            let (mut least, mut greatest) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
-            let room = (carries * packing.unit) as i32;
-            if least & (texel - 1) < room {
-                least += room;
-            }
-            if greatest & (texel - 1) >= texel - room {
-                greatest -= room;
-            }
-            self.attributes[i].plane = plane;
-            self.attributes[i].limit(least, greatest.max(least));
-            carries = packing.carries(step, steps);
-            if step >> (packing.turn_log2 - 2) != 0 {
-                self.step_singly();
-            }
+        let [u, v] = [|vertex: &ScreenVertex| vertex.u, |vertex: &ScreenVertex| vertex.v]
+            .map(|coordinate| triangle.vertices.map(|vertex| coordinate(vertex).to_bits()));
+        let carries = self.lean_by(0, &u, needs, [slack, 0], most);
+        self.lean_by(1, &v, needs, [slack, carries], most);
+    }
+
+    /// Makes one do so, from its values at the corners. Returns in how many units carries of it may come to.
+    #[inline(never)]
+    fn lean_by(
+        &mut self,
+        i: usize,
+        at: &[i32; 3],
+        needs: &Needs,
+        [slack, carries]: [u32; 2],
+        most: i32,
+    ) -> u32 {
+        let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
+        let attribute = &mut self.attributes[i];
+        if direction == 0 {
+            attribute.keep_inside(needs.inset, true);
+            return 0;
         }
+        let mut plane = attribute.plane;
+        let mut behind = most;
+        if !self.sliver {
+            plane.snap(&self.corners[0], slack);
+            let mut worst = 0;
+            for (corner, value) in self.corners.iter().zip(at) {
+                worst = worst.min(direction * plane.error_at(corner, value - attribute.least));
+            }
+            behind = behind.min(1 - (worst >> 4));
+        }
+        let packing = &needs.packing;
+        let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
+        let step = self.at(&plane, first, y).1.unsigned_abs();
+        let [first, last] = self.extent(0);
+        // What is not small is drawn in shorter runs, of a large texture.
+        let steps = if !self.is_small && packing.steps == 15 { 7 } else { packing.steps };
+        let steps = steps.min((last - first) as u32);
+        let room = (carries * packing.unit) as i32;
+        behind += room + (packing.unit + steps * (step & (packing.unit - 1))) as i32;
+        plane.origin = plane.origin.wrapping_add_signed(direction * behind);
+        let texel = 0x10000 >> needs.texture_scale;
+        let (mut least, mut greatest) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
+        if least & (texel - 1) < room {
+            least += room;
+        }
+        if greatest & (texel - 1) >= texel - room {
+            greatest -= room;
+        }
+        let attribute = &mut self.attributes[i];
+        attribute.plane = plane;
+        attribute.limit(least, greatest.max(least));
+        if step >> (packing.turn_log2 - 2) != 0 {
+            self.step_singly();
+        }
+        packing.carries(step, steps)
     }
 
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
@@ -559,6 +580,7 @@ impl TriangleSetup {
     }
 
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.
+    #[inline(never)]
     fn extent(&self, axis: usize) -> [i32; 2] {
         let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
         let (first, last) = (a.min(b).min(c), a.max(b).max(c));
