@@ -231,7 +231,7 @@ fn largest_error<Q: Quality, const RUN: usize>(triangle: &Triangle, strip: Strip
     let drawn = ShadedTriangle::new(&corners, Cull::None, &shader).expect("within range");
     let mut screen = Screen::new(Rectangle::new(Point::new(0, strip.row as i32), strip.size()));
     drawn.format::<Bits>().run::<RUN>().draw(&mut screen).expect("patience");
-    let (low, high) = triangle.range(0);
+    let (low, high) = triangle.sampled(0);
     let error = |(&(x, y), &Bits(u)): (&(i32, i32), &Bits)| {
         assert!((low..=high).contains(&u), "{x}, {y} shows what no corner does");
         let exact = triangle.at(x, y);

@@ -5,8 +5,8 @@
 //! - Assumes: the vertices lie in the guard band.
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
-use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
-use crate::raster::{Needs, Rows, Span, Straight, TriangleSetup, visible};
+use crate::geometry::{Count, Cull, Inputs, Oriented, RangeError, ScreenVertex, area, position};
+use crate::raster::{Needs, Packing, Rows, Span, Straight, TriangleSetup, visible};
 use crate::shade::{Patch, Quality, Run, Shader};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
@@ -41,11 +41,16 @@ pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     shader: &S,
     [is_orthographic, is_gray]: [bool; 2],
 ) -> Needs {
+    let texture_scale = shader.texture_scale().min(8);
+    let packing = Packing::new(shader.packed_log2(), texture_scale);
+    let inputs = shader.inputs();
     Needs {
-        inputs: shader.inputs(),
+        inputs,
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
-        texture_scale: shader.texture_scale().min(8),
+        texture_scale,
+        inset: if matches!(inputs, Inputs::Uv | Inputs::UvColor) { packing.inset() } else { 0 },
+        packing,
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,
     }

@@ -2,6 +2,8 @@
 
 mod attribute;
 mod depth;
+mod lean;
+mod packing;
 mod plane;
 mod rows;
 mod setup;
@@ -12,6 +14,7 @@ mod triangle;
 
 pub(crate) use attribute::{Attribute, short_inverse, towards_zero};
 pub(crate) use depth::visible;
+pub(crate) use packing::Packing;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;
 pub(crate) use straight::Straight;

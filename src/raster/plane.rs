@@ -11,3 +11,27 @@ pub(crate) struct Plane {
     /// The change over one column to the right, and over one row down. In a sliver: from corner 0 to corner 1, and to corner 2.
     pub(crate) steps: [i32; 2],
 }
+
+impl Plane {
+    /// Moves each step to the nearest multiple of 2⁻¹² if that is within its error, or 2⁻¹⁶ of it more; around a corner.
+    ///
+    /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
+    /// coordinates at every pixel.
+    pub(super) fn snap(&mut self, corner: &[i32; 2], error: u32) {
+        for (step, at) in self.steps.iter_mut().zip(corner) {
+            let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
+            if error > 0 && change.unsigned_abs() <= error + (step.unsigned_abs() >> 16) {
+                *step = step.wrapping_add(change);
+                self.origin = self.origin.wrapping_sub((at >> 4).wrapping_mul(change) as u32);
+            }
+        }
+    }
+
+    /// By how much what it says at a corner (1/16 px) is above the value there, in 1/16.
+    #[inline(never)]
+    pub(super) fn error_at(&self, corner: &[i32; 2], value: i32) -> i32 {
+        let [right, down] = self.steps;
+        let way = right.wrapping_mul(corner[0] - 8).wrapping_add(down.wrapping_mul(corner[1] - 8));
+        ((self.origin.wrapping_sub(value as u32) << 4) as i32).wrapping_add(way)
+    }
+}

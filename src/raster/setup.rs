@@ -55,14 +55,25 @@ struct Slopes {
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
     to_center: [i32; 2],
-    /// From that pixel to the nearest on the screen.
-    to_screen: [i32; 2],
+    /// From that pixel to the middle of what is within the screen.
+    to_middle: [i32; 2],
+}
+
+impl Slopes {
+    /// By how much a value that rises so from corner 0 to 1 and 2 changes over one column or row, in units of 2^−`fraction_bits`,
+    /// rounded down: up to 3 too little.
+    #[inline]
+    fn slope(&self, axis: usize, rise: [i32; 2]) -> i32 {
+        let [b, c] = self.of_weights[axis];
+        mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c))
+    }
 }
 
 impl TriangleSetup {
     #[inline]
     pub(crate) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
         self.sliver = false;
+        self.leans = false;
         self.is_small = true;
         self.longest = STRAIGHT;
         if needs.inputs == Inputs::None && !needs.depth {
@@ -74,6 +85,8 @@ impl TriangleSetup {
         }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
+        } else if needs.inset > 0 && !self.leans {
+            self.keep_small_inside(needs);
         }
     }
 
@@ -101,11 +114,12 @@ impl TriangleSetup {
             self.straight = true;
             return;
         }
+        let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Always => true,
-            Straight::Below(limit) => {
+            Straight::Below(limit) if !is_exact => {
                 Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
             }
+            _ => true,
         };
         if !self.straight {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
@@ -115,6 +129,9 @@ impl TriangleSetup {
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
+        if needs.inset > 0 {
+            self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
+        }
     }
 
     /// Finds out whether it is a sliver, too.
@@ -135,7 +152,10 @@ impl TriangleSetup {
             fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
-            to_screen: pixel.map(|at| at.clamp(0, 1023) - at),
+            to_middle: [0, 1].map(|axis| {
+                let [first, last] = self.extent(axis);
+                ((first + last) >> 1) - pixel[axis]
+            }),
         }
     }
 
@@ -147,19 +167,18 @@ impl TriangleSetup {
         }
         let mut plane = Plane { origin, steps: [0; 2] };
         for axis in 0..2 {
-            let [b, c] = slopes.of_weights[axis];
-            let slope = mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c));
+            let slope = slopes.slope(axis, rise);
             let bits = slopes.fraction_bits;
             let (step, rest) = if bits > 0 {
                 let step = ((slope >> (bits - 1)) + 1) >> 1;
-                // What rounding leaves, with at most 12 of its bits, over as far as the screen is away.
+                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
                 let rest = slope.wrapping_sub(step << bits);
                 (
                     step,
                     if bits > 12 {
-                        ((rest >> (bits - 12)) * slopes.to_screen[axis]) >> 12
+                        ((rest >> (bits - 12)) * slopes.to_middle[axis]) >> 12
                     } else {
-                        (rest * slopes.to_screen[axis]) >> bits
+                        (rest * slopes.to_middle[axis]) >> bits
                     },
                 )
             } else {

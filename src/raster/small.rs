@@ -123,13 +123,21 @@ impl TriangleSetup {
         }
         match needs.straight {
             Straight::Below(limit)
-                if needs.inputs != Inputs::None && !Bend::is_needless(&edges, q, least, limit) =>
+                if needs.inputs != Inputs::None
+                    && most != least
+                    && !Bend::is_needless(&edges, q, least, limit) =>
             {
                 self.set_bending(triangle, needs, &slopes, &q, limit, simple)
             }
             _ => {
                 self.straight = true;
-                self.set_linear(triangle, needs, &slopes)
+                if !self.set_linear(triangle, needs, &slopes) {
+                    return false;
+                }
+                if needs.is_exactly_straight(least, most) && needs.inset > 0 {
+                    self.lean(triangle, needs, 2, i32::MAX);
+                }
+                true
             }
         }
     }

@@ -30,4 +30,10 @@ impl<'a> Span<'a> {
     pub(crate) fn depth(&self) -> (u32, i32) {
         self.setup.at(&self.setup.z, self.x, self.y)
     }
+
+    /// Whether attributes are linear on the screen.
+    #[inline]
+    pub(crate) fn is_straight(&self) -> bool {
+        self.setup.straight
+    }
 }

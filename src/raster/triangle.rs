@@ -1,6 +1,7 @@
 //! The arrow out of set-up: a triangle with all that its rows and pixels need, computed once.
 
 use super::attribute::Attribute;
+use super::packing::Packing;
 use super::plane::Plane;
 use super::straight::Straight;
 use crate::geometry::{Inputs, Oriented, ScreenVertex};
@@ -28,6 +29,8 @@ pub(crate) struct TriangleSetup {
     pub(crate) is_small: bool,
     /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
     pub(crate) straight: bool,
+    /// Whether they are so exactly, and texture coordinates [lean](TriangleSetup::lean).
+    pub(crate) leans: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(crate) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
@@ -49,6 +52,11 @@ pub(crate) struct Needs {
     pub(crate) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(crate) texture_scale: u32,
+    pub(crate) packing: Packing,
+    /// How far from the ends of their range u and v stay if they may not be [exactly straight](TriangleSetup::lean), I16F16: as far as
+    /// [carries](Packing) can take v in a small triangle, which is half as far as elsewhere, and 1 at least. 0 if they are not among
+    /// the inputs.
+    pub(crate) inset: u32,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
@@ -56,6 +64,12 @@ pub(crate) struct Needs {
 }
 
 impl Needs {
+    /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
+    #[inline]
+    pub(crate) fn is_exactly_straight(&self, least: u32, most: u32) -> bool {
+        least == most || matches!(self.straight, Straight::Always)
+    }
+
     /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
     /// v, then colours, of which there is one in a grey triangle.
     #[inline]
@@ -97,12 +111,21 @@ impl TriangleSetup {
             sliver: false,
             is_small: false,
             straight: false,
+            leans: false,
             z: Plane::default(),
             q: Plane::default(),
             longest: 0,
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
+    }
+
+    /// The first and the last column or row of it within the screen, or as much of it as the screen has.
+    #[inline(never)]
+    pub(super) fn extent(&self, axis: usize) -> [i32; 2] {
+        let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+        let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+        [first.max((last - 1023).min(0)), last.min(1023)]
     }
 
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.

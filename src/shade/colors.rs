@@ -6,7 +6,7 @@
 
 use super::channels::{Channels, lit};
 use super::fill::{Fill, in_pairs, plus};
-use super::packed::{longest_row_of, packed_from, packed_step, shifted, uv_in_units};
+use super::packed::{longest_row_of, packed_from, packed_step, shifted, turned, uv_in_units};
 use super::row::Row;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::scene::Texture;
@@ -37,7 +37,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         C::place(at).word::<F>()
     }
 
-    #[inline]
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
         let packed_step = C::step(step);
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
@@ -108,7 +108,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         if !self.is_packed {
             return self.run_unpacked(pixels, [at, step], [light, light_step]);
         }
-        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
+        let (mut packed, step) = (packed_from(at, step[0]), packed_step([turned(step[0]), step[1]]));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));

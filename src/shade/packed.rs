@@ -41,6 +41,12 @@ pub(crate) fn packed_step([u, v]: [i32; 2]) -> u32 {
     ((v as u32) << 16).wrapping_add(u as u32)
 }
 
+/// A step of u without whole turns, which would be carried into v.
+#[inline]
+pub(crate) fn turned(u_step: i32) -> i32 {
+    (u_step as i16).into()
+}
+
 /// A step without its last bits, cut towards zero.
 #[inline]
 pub(crate) fn shifted(step: i32, log2: u32) -> i32 {

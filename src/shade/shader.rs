@@ -82,6 +82,12 @@ pub trait Shader<F: PixelFormat> {
         0
     }
 
+    /// Log₂ of the texture's sides, if coordinates are packed in one word.
+    #[doc(hidden)]
+    fn packed_log2(&self) -> Option<[u32; 2]> {
+        None
+    }
+
     /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
     /// ways to colour a pixel may do so here, once for many.
     fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {

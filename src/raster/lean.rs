@@ -1,0 +1,158 @@
+//! Lean: texture coordinates that keep to their side of a whole texel, and to the range of the corners.
+//!
+//! - In: a triangle whose planes are set, and its texture coordinates at the corners.
+//! - Out: the planes of u and v moved by what they, and runs drawn from them, may be behind; the range that u and v may have.
+//! - Assumes: what each path is off by, as said beside it.
+
+use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
+use crate::geometry::{Oriented, ScreenVertex};
+use crate::num::wide;
+
+impl TriangleSetup {
+    /// Makes the range of a small triangle's u and v end a little inside on both sides, where they may not be exactly straight.
+    #[inline(never)]
+    pub(super) fn keep_small_inside(&mut self, needs: &Needs) {
+        let [u, v, ..] = &mut self.attributes;
+        if u.plane.steps[0].unsigned_abs() >> (needs.packing.turn_log2 - 2) != 0 {
+            return self.keep_steep_inside(needs);
+        }
+        u.keep_straight_inside(needs.inset);
+        v.keep_straight_inside(needs.inset);
+    }
+
+    /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels: so often that v had better not be stepped.
+    #[cold]
+    #[inline(never)]
+    fn keep_steep_inside(&mut self, needs: &Needs) {
+        self.step_singly();
+        let [u, v, ..] = &mut self.attributes;
+        u.keep_inside(2 * needs.inset, true);
+        v.keep_inside(2 * needs.inset, true);
+    }
+
+    /// Makes rows of a small triangle begin anew at every pixel.
+    fn step_singly(&mut self) {
+        if self.longest == STRAIGHT {
+            self.attributes.iter_mut().for_each(|attribute| attribute.bend = [0; 3]);
+        }
+        self.longest = 0;
+    }
+
+    /// Makes u and v of what is not small lean if they are exactly straight, or stay a little inside their range.
+    #[inline(never)]
+    pub(super) fn settle(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: Option<i32>) {
+        if let Some(fraction_bits) = fraction_bits {
+            return self.lean_large(triangle, needs, fraction_bits);
+        }
+        let [u, v, ..] = &mut self.attributes;
+        for attribute in [u, v] {
+            attribute.keep_inside(2 * needs.inset, self.straight);
+        }
+    }
+
+    /// As [`TriangleSetup::lean`], of one that is not small.
+    ///
+    /// A plane is off by half a unit at every column and row from its middle on, by three units of a slope from corner 0 on, and by 20
+    /// where it begins.
+    #[cold]
+    fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: i32) {
+        let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
+        if self.sliver {
+            return self.lean(triangle, needs, 0, 24 + (width >> 1));
+        }
+        let bits = fraction_bits;
+        let slope_error =
+            |count: i32| 1 + if bits < 0 { (3 * count) << (-bits & 31) } else { (3 * count) >> bits };
+        let slack = if fraction_bits < 3 { 2 + slope_error(1) as u32 } else { 0 };
+        self.lean(triangle, needs, slack, 20 + ((width + height) >> 2) + slope_error(4096));
+    }
+
+    /// Makes exactly straight texture coordinates lean in the direction of the change that decides of which texel a whole coordinate
+    /// is (see [`direction`]): by as much as their plane, and a run that is drawn from it, may be behind. So a coordinate that is whole
+    /// at a pixel's centre is never taken for the texel on the wrong side.
+    ///
+    /// What a plane is off by is linear too, so nowhere worse than at one of the corners, where it is known: `most` is what it may be
+    /// within the screen. (A sliver's plane is exact to 4 units where a run begins, and its step to half a unit: `most`.)
+    ///
+    /// A run of packed coordinates is behind by what they are rounded down to at its first pixel, by what its step is cut to, at every
+    /// further pixel, and v by the carries of u, which may put it ahead, too. So v stays that far from the border between two texels
+    /// where the end of its range lies close to one; which texels it shows does not depend on that.
+    ///
+    /// A step that may be off by `slack` is [taken for](Plane::snap) the one of a sprite.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
+        self.leans = true;
+        let [u, v] = [|vertex: &ScreenVertex| vertex.u, |vertex: &ScreenVertex| vertex.v]
+            .map(|coordinate| triangle.vertices.map(|vertex| coordinate(vertex).to_bits()));
+        let carries = self.lean_by(0, &u, needs, [slack, 0], most);
+        self.lean_by(1, &v, needs, [slack, carries], most);
+    }
+
+    /// Makes one do so, from its values at the corners. Returns in how many units carries of it may come to.
+    #[inline(never)]
+    fn lean_by(
+        &mut self,
+        i: usize,
+        at: &[i32; 3],
+        needs: &Needs,
+        [slack, carries]: [u32; 2],
+        most: i32,
+    ) -> u32 {
+        let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
+        let attribute = &mut self.attributes[i];
+        if direction == 0 {
+            attribute.keep_inside(needs.inset, true);
+            return 0;
+        }
+        let mut plane = attribute.plane;
+        let mut behind = most;
+        if !self.sliver {
+            plane.snap(&self.corners[0], slack);
+            let mut worst = 0;
+            for (corner, value) in self.corners.iter().zip(at) {
+                worst = worst.min(direction * plane.error_at(corner, value - attribute.least));
+            }
+            behind = behind.min(1 - (worst >> 4));
+        }
+        let packing = &needs.packing;
+        let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
+        let step = self.at(&plane, first, y).1.unsigned_abs();
+        let [first, last] = self.extent(0);
+        // What is not small is drawn in shorter runs, of a large texture.
+        let steps = if !self.is_small && packing.steps == 15 { 7 } else { packing.steps };
+        let steps = steps.min((last - first) as u32);
+        let room = (carries * packing.unit) as i32;
+        behind += room + (packing.unit + steps * (step & (packing.unit - 1))) as i32;
+        plane.origin = plane.origin.wrapping_add_signed(direction * behind);
+        let texel = 0x10000 >> needs.texture_scale;
+        let (mut least, mut greatest) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
+        if least & (texel - 1) < room {
+            least += room;
+        }
+        if greatest & (texel - 1) >= texel - room {
+            greatest -= room;
+        }
+        let attribute = &mut self.attributes[i];
+        attribute.plane = plane;
+        attribute.limit(least, greatest.max(least));
+        if step >> (packing.turn_log2 - 2) != 0 {
+            self.step_singly();
+        }
+        packing.carries(step, steps)
+    }
+}
+
+/// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
+/// any point, and infinitely less below that: as in the top-left rule. Exact.
+pub(crate) fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
+    match sign_of_sum(right, rise) {
+        0 => sign_of_sum(down, rise),
+        sign => sign,
+    }
+}
+
+#[inline(never)]
+fn sign_of_sum([b, c]: &[i32; 2], rise: [i32; 2]) -> i32 {
+    (wide(rise[0], *b) + wide(rise[1], *c)).signum() as i32
+}
