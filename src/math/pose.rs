@@ -1,10 +1,9 @@
 //! Where a mesh or a camera stands.
 
-use super::unit::{length, normalized};
+use super::matrix::{bits, column_of, cross, dot, off, round14, saturated, turned_round, wrapping_dot};
+use super::scale::{ScaleError, scale_of};
 use super::{Quaternion, Turn, Vec3};
-use crate::num::{I2F14, I16F16, U10F22, bits_or_max, shift_round, wide};
-use core::fmt;
-use core::ops::Mul;
+use crate::num::{I2F14, I16F16, U10F22, shift_round};
 
 /// A scale for each axis of the mesh, a rotation, and a translation, applied in this order.
 ///
@@ -248,131 +247,6 @@ impl Pose {
         [cross(y, z), cross(z, x), cross(x, y)]
     }
 
-    /// This pose first, then `outer`; as an operator `outer * self`.
-    ///
-    /// A child's pose in its parent, then the parent's in the world, is the child's in the world: for every pair of poses, but for
-    /// rounding.
-    ///
-    /// If `outer` has one scale for all axes, each element, each scale and each coordinate are rounded once, and saturate. The
-    /// result's rotation is a rotation if both are.
-    ///
-    /// If not, a child that is turned in its parent is sheared by the parent's stretch (but where it is turned by quarters
-    /// about the axes): no scales and no rotation make that. The result then has the sheared axes in its `rotation`, as
-    /// columns of length 1 that are not at right angles, and their lengths, within 2⁻²⁷ of themselves and a bit, in its `scale`.
-    /// It draws, lights, transforms, composes and inverts as exactly as any other, as far as its elements of 14 bits tell columns
-    /// from each other; what asks for [the rotation itself](Pose::quaternion) gets the nearest.
-    #[must_use]
-    pub const fn then(self, outer: Self) -> Self {
-        let (mut rotation, mut scale) = (outer.rotation, self.scale);
-        let stretch = [outer.scale[0].to_bits(), outer.scale[1].to_bits(), outer.scale[2].to_bits()];
-        let is_even = stretch[0] == stretch[1] && stretch[1] == stretch[2];
-        let mut column = 0;
-        while column < 3 {
-            let axis = column_of(&self.rotation, column);
-            // 36 fraction bits, below 2⁴⁸.
-            let stretched = [
-                axis[0] as i64 * stretch[0] as i64,
-                axis[1] as i64 * stretch[1] as i64,
-                axis[2] as i64 * stretch[2] as i64,
-            ];
-            let (axis, fraction_bits, by) = match normalized(stretched) {
-                Some(axis) if !is_even => (axis, 30, shift_round(length(stretched) as i64, 14) as u64),
-                _ => (axis, 14, if is_even { stretch[0] as u64 } else { 0 }),
-            };
-            let mut row = 0;
-            while row < 3 {
-                rotation[row][column] = round14(dot(bits(outer.rotation[row]), axis), fraction_bits);
-                row += 1;
-            }
-            scale[column] = product(by, scale[column].to_bits());
-            column += 1;
-        }
-        Self { rotation, scale, translation: outer.transform_point(self.translation) }
-    }
-
-    /// The pose that undoes this one, as far as formats go.
-    ///
-    /// Of a pose that keeps angles (one scale for all axes, and a rotation) it is the rotation transposed, the scale's
-    /// reciprocal, and the translation that takes this one's back to the origin.
-    /// Together they turn by less than 2.3 · 2⁻¹⁴ per element. The reciprocal is rounded to 2⁻²² (for a
-    /// scale of 1000 that is 2⁻¹³ of it) and saturates for scales below 2⁻¹⁰, also for 0,
-    /// which has no inverse; the translation saturates where it is beyond ±32768.
-    ///
-    /// Of any other it is the inverse matrix, as [`Pose::then`] has it: columns of length 1, each element within 0.501 · 2⁻¹⁴, in
-    /// `rotation`, which is none if axes of different scales were turned; their lengths within 2⁻²⁷ of themselves and a bit in
-    /// `scale`. What has no inverse (a scale of 0, a matrix that is flat) or one too large gets the largest scale.
-    #[must_use]
-    pub const fn inverse(self) -> Self {
-        let (rotation, scale) =
-            if self.keeps_angles() { self.transposed() } else { self.inverse_of_any_matrix() };
-        let back = Self { rotation, scale, translation: Vec3::ZERO };
-        let [x, y, z] = back.placed(self.translation);
-        Self { translation: saturated([-x, -y, -z]), ..back }
-    }
-
-    /// The inverse's rotation and scale, if this is a rotation and one scale.
-    const fn transposed(&self) -> ([[I2F14; 3]; 3], [U10F22; 3]) {
-        let mut rotation = self.rotation;
-        let mut i = 0;
-        while i < 9 {
-            rotation[i / 3][i % 3] = self.rotation[i % 3][i / 3];
-            i += 1;
-        }
-        let scale = self.scale[0].to_bits() as u64;
-        let reciprocal = match ((1u64 << 44) + scale / 2).checked_div(scale) {
-            Some(reciprocal) => reciprocal,
-            None => u64::MAX,
-        };
-        (rotation, [scale_of_bits(reciprocal); 3])
-    }
-
-    /// The inverse's rotation and scale: rows of cofactors as columns, divided by the determinant, and each row by a scale.
-    const fn inverse_of_any_matrix(&self) -> ([[I2F14; 3]; 3], [U10F22; 3]) {
-        let cofactors = self.cofactors();
-        let determinant = dot(bits(self.rotation[0]), cofactors[0]); // 42 fraction bits, below 2⁴⁸
-        // 2⁴⁰ times reciprocals are 31 bits times 2^(33 − zeros).
-        let (mut reciprocals, mut zeros) = ([0i32; 3], [0u32; 3]);
-        let mut i = 0;
-        while i < 3 {
-            let scale = self.scale[i].to_bits() as u64;
-            let reciprocal = (1u64 << 62) / if scale > 0 { scale } else { 1 };
-            zeros[i] = reciprocal.leading_zeros();
-            reciprocals[i] = ((reciprocal << zeros[i]) >> 33) as i32;
-            i += 1;
-        }
-        let (mut rotation, mut scale) = (self.rotation, self.scale);
-        let mut column = 0;
-        while column < 3 {
-            // Below 2⁶², in the largest unit of those that are not 0.
-            let (mut v, mut unit) = ([0; 3], 33);
-            i = 0;
-            while i < 3 {
-                v[i] = wide(cofactors[column][i], reciprocals[i]);
-                unit = if v[i] != 0 && zeros[i] < unit { zeros[i] } else { unit };
-                i += 1;
-            }
-            i = 0;
-            while i < 3 {
-                v[i] >>= if v[i] != 0 { zeros[i] - unit } else { 0 };
-                i += 1;
-            }
-            // The column is v · 2^(7 − unit) / determinant.
-            let axis = match normalized(v) {
-                Some(axis) => axis,
-                None => [0; 3],
-            };
-            i = 0;
-            while i < 3 {
-                let component = if determinant < 0 { -axis[i] } else { axis[i] };
-                rotation[i][column] = round14(component as i64, 16);
-                i += 1;
-            }
-            scale[column] = quotient(length(v), determinant.unsigned_abs(), 29 - unit as i32);
-            column += 1;
-        }
-        (rotation, scale)
-    }
-
     /// Where a point goes: scaled, turned, moved. Rounded once, from exact, to 2⁻¹⁶; saturated.
     ///
     /// 21 multiplications. Meshes have their own, quicker way.
@@ -465,7 +339,7 @@ impl Pose {
     }
 
     /// Scaled and turned: 16 fraction bits, rounded, below 2⁴⁶.
-    const fn placed(&self, point: Vec3) -> [i64; 3] {
+    pub(super) const fn placed(&self, point: Vec3) -> [i64; 3] {
         let (mut placed, mut rest) = ([0; 3], [0; 3]);
         let point = point.bits();
         let mut i = 0;
@@ -502,141 +376,15 @@ impl Pose {
     }
 }
 
-/// A scale that a [`Pose`] cannot have: it is not a number of 0 or more and below 1024.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScaleError {
-    /// What was given.
-    pub scale: f32,
-}
-
-impl fmt::Display for ScaleError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the scale of a pose is not a number of 0 or more and below 1024: {}", self.scale)
-    }
-}
-
-impl core::error::Error for ScaleError {}
-
 impl Default for Pose {
     fn default() -> Self {
         Self::IDENTITY
     }
 }
 
-/// The right one first: `parent * child` is `child.then(parent)`.
-impl Mul for Pose {
-    type Output = Self;
-    fn mul(self, child: Self) -> Self {
-        child.then(self)
-    }
-}
-
-const fn bits(row: [I2F14; 3]) -> [i32; 3] {
-    [row[0].to_bits() as i32, row[1].to_bits() as i32, row[2].to_bits() as i32]
-}
-
-const fn column_of(rows: &[[I2F14; 3]; 3], column: usize) -> [i32; 3] {
-    bits([rows[0][column], rows[1][column], rows[2][column]])
-}
-
-/// The same with its x column the other way round: the mirror image of what is turned.
-const fn turned_round(mut rotation: [[I2F14; 3]; 3]) -> [[I2F14; 3]; 3] {
-    let mut row = 0;
-    while row < 3 {
-        rotation[row][0] = rotation[row][0].saturating_neg();
-        row += 1;
-    }
-    rotation
-}
-
-/// Of vectors of 16 bits: each difference is at most 2³⁰ + 2¹⁵ · (2¹⁵ − 1), which fits.
-const fn cross(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Of vectors of 16 bits, its low 32 bits.
-const fn wrapping_dot(a: [i32; 3], b: [i32; 3]) -> i32 {
-    (a[0] * b[0]).wrapping_add(a[1] * b[1]).wrapping_add(a[2] * b[2])
-}
-
-const fn off(value: i32, from: i32) -> u32 {
-    value.wrapping_sub(from).unsigned_abs()
-}
-
-/// `None` for a number that is none, below 0 or too large.
-const fn scale_of(value: f32) -> Option<U10F22> {
-    let bits = bits_or_max(value, 22);
-    if value < 0.0 || bits > u32::MAX as i64 { None } else { Some(U10F22::from_bits(bits as u32)) }
-}
-
-const fn scale_of_bits(bits: u64) -> U10F22 {
-    U10F22::from_bits(if bits > u32::MAX as u64 { u32::MAX } else { bits as u32 })
-}
-
-/// A length of 22 fraction bits, below 2³⁴, times a scale: rounded, saturated.
-const fn product(length: u64, scale: u32) -> U10F22 {
-    // A length of more than 32 bits has two to spare.
-    let (length, shift) = if length <= u32::MAX as u64 { (length, 22) } else { (length >> 2, 20) };
-    // Below 2⁶⁴ with the rounding too: (2³² − 1)² + 2²¹.
-    scale_of_bits((length * scale as u64 + (1 << (shift - 1))) >> shift)
-}
-
-/// `dividend` · 2^`exponent` / `divisor`, which has at most 48 bits, as bits of a scale: within 2⁻³⁰ of itself, rounded, saturated.
-const fn quotient(dividend: u64, divisor: u64, exponent: i32) -> U10F22 {
-    if dividend == 0 {
-        return U10F22::ZERO;
-    } else if divisor == 0 {
-        return U10F22::MAX;
-    }
-    let (up, down) = (dividend.leading_zeros(), 32u32.saturating_sub(divisor.leading_zeros()));
-    // 31 bits or more, times 2^−shift.
-    let ratio = (dividend << up) / (divisor >> down);
-    let shift = up as i32 + down as i32 - exponent;
-    if shift > 64 {
-        U10F22::ZERO
-    } else if shift > 0 {
-        scale_of_bits((ratio >> (shift - 1)).saturating_add(1) >> 1)
-    } else if shift > -32 && ratio <= u32::MAX as u64 {
-        scale_of_bits(ratio << -shift)
-    } else {
-        U10F22::MAX
-    }
-}
-
-/// Below 2⁶³, as one factor of each product is at most 2³⁰. Not inlined: on Armv6-M it is long.
-#[inline(never)]
-pub(crate) const fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
-    wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
-}
-
 /// a + (b − a) · t, rounded, for a `t` of 0 … 1 and numbers below 2³³.
 const fn between(a: i64, b: i64, t: I16F16) -> i64 {
     a + shift_round((b - a) * t.to_bits() as i64, 16)
-}
-
-const fn saturated(v: [i64; 3]) -> Vec3 {
-    const fn coordinate(bits: i64) -> I16F16 {
-        I16F16::from_bits(if bits > i32::MAX as i64 {
-            i32::MAX
-        } else if bits < i32::MIN as i64 {
-            i32::MIN
-        } else {
-            bits as i32
-        })
-    }
-    Vec3::new(coordinate(v[0]), coordinate(v[1]), coordinate(v[2]))
-}
-
-/// A sum of products with 14 fraction bits and `fraction_bits` more as an `I2F14`, rounded and saturated.
-const fn round14(sum: i64, fraction_bits: u32) -> I2F14 {
-    let rounded = shift_round(sum, fraction_bits);
-    I2F14::from_bits(if rounded > i16::MAX as i64 {
-        i16::MAX
-    } else if rounded < i16::MIN as i64 {
-        i16::MIN
-    } else {
-        rounded as i16
-    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! The camera: where from and how wide a scene is seen.
 
-use super::LensError;
 use super::projection::{MIN_NEAR, Projection, clamped, limited};
+use super::{LensError, PlaneError};
 use crate::math::{Pose, Turn, Vec3, normalized};
 use crate::num::{I2F14, I12F4, I16F16, bits_from_f32, bits_or_max};
-use core::fmt;
 use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
@@ -328,43 +327,6 @@ const fn limits(pixels: f32, size: Size) -> Option<LensError> {
         None
     }
 }
-
-/// A distance that a clipping plane cannot have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PlaneError {
-    /// Below 1/256 for a near plane, below 2⁻¹⁶ for a far one.
-    TooNear,
-    /// 32768 or more.
-    TooFar,
-    /// Not a number.
-    NotANumber,
-}
-
-impl PlaneError {
-    const fn of(distance: f32, least: i32) -> Option<Self> {
-        if distance.is_nan() {
-            Some(Self::NotANumber)
-        } else if distance >= 32768.0 {
-            Some(Self::TooFar)
-        } else if bits_from_f32(distance, 16) < least {
-            Some(Self::TooNear)
-        } else {
-            None
-        }
-    }
-}
-
-impl fmt::Display for PlaneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::TooNear => "a near plane is at least 1/256 away, a far one 1/65536",
-            Self::TooFar => "a clipping plane is less than 32768 away",
-            Self::NotANumber => "the distance of a clipping plane is not a number",
-        })
-    }
-}
-
-impl core::error::Error for PlaneError {}
 
 /// The point of the world at a place in the space of an eye (within ±2⁴⁶, I16F16), saturated at the world's ends.
 fn moved(pose: &Pose, eye: [i64; 3]) -> Vec3 {

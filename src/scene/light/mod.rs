@@ -2,6 +2,7 @@
 
 mod lights;
 mod normal;
+mod point;
 mod stretch;
 
 pub use lights::{Light, Lighting, Lights, LightsError};

@@ -153,3 +153,9 @@ pub(super) fn magnitude(vector: [i32; 3]) -> u32 {
 pub(super) fn magnitude64(vector: [i64; 3]) -> u64 {
     vector.iter().fold(0, |all, component| all | component.unsigned_abs())
 }
+
+/// How much of a cosine counts.
+#[inline]
+pub(super) fn facing(cosine: i32, two_sided: bool) -> u32 {
+    if two_sided { cosine.unsigned_abs() } else { cosine.max(0) as u32 }
+}

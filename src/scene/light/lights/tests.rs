@@ -1,5 +1,6 @@
 #![expect(clippy::float_arithmetic, reason = "the f64 truth of a test")]
 
+use super::super::normal::Direction;
 use super::*;
 use crate::Turn;
 use crate::num::{I2F14, U10F22};
