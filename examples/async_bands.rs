@@ -164,7 +164,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let area = (SCREEN.width * SCREEN.height) as usize;
     let mut depth = vec![0; area];
     let shown = Band::<Rgb565, Depth16>::new(SCREEN, &mut display.spi.panel, &mut depth)?;
-    picture::rgba(&shown).save("out/async.png")?;
+    picture::Rgba::of(&shown).save("out/async.png")?;
     println!("wrote out/async.png");
     Ok(())
 }

@@ -98,7 +98,7 @@ fn run(directory: &Path) -> Result<(), Box<dyn Error>> {
     println!("\nBytes; the stack comes to that, less than 1.9 KB. Every height showed the same picture.");
 
     let (picture, chart) = (directory.join("bands.png"), directory.join("bands.svg"));
-    picture::rgba(&frame).save(&picture)?;
+    picture::Rgba::of(&frame).save(&picture)?;
     draw_chart(&lines, &chart)?;
     println!("Written: {} and {}", picture.display(), chart.display());
     Ok(())

@@ -214,7 +214,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     draw_interface(&mut panel)?;
     let cards = Rectangle::new(Point::new(0, 40), Size::new(SIZE.width, 162));
     let (mut windows, mut sent) = (0, 0);
-    let mut film = picture::Film::create(&gif, 40)?;
+    let mut film = picture::Film::create(&gif, SIZE, 40)?;
     for frame in 0..FRAMES {
         let time = (u32::from(frame) * 65536 / u32::from(FRAMES)) as u16;
         // The interface anew where cards were.
@@ -227,7 +227,7 @@ fn run() -> Result<(), Box<dyn Error>> {
                 .draw(&mut panel)?;
         }
         (windows, sent) = (windows + panel.windows, sent + panel.sent);
-        let picture = rgba(&panel);
+        let picture = picture::Rgba::new(SIZE, panel.glass.iter().copied());
         if frame == 14 {
             picture.save(&png)?;
         }
@@ -244,10 +244,4 @@ fn run() -> Result<(), Box<dyn Error>> {
         sent / frames
     );
     Ok(())
-}
-
-fn rgba(panel: &Panel) -> image::RgbaImage {
-    let widen = |value: u8, bits: u32| (u32::from(value) * 255 / ((1 << bits) - 1)) as u8;
-    let bytes = panel.glass.iter().flat_map(|c| [widen(c.r(), 5), widen(c.g(), 6), widen(c.b(), 5), 255]);
-    image::RgbaImage::from_raw(SIZE.width, SIZE.height, bytes.collect()).unwrap_or_default()
 }

@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 
 const SIZE: Size = Size::new(240, 240);
 const FRAMES: u16 = 72;
-const BRICK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/assets/brick.png");
+const BRICK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/brick.png");
 const NIGHT: Rgb565 = Rgb565::new(2, 5, 6);
 
 /// A face's four corners counter-clockwise, as seen from outside, with the whole texture on it, lying
@@ -163,7 +163,7 @@ fn run() -> Result<(), Box<dyn Error>> {
 
     std::fs::create_dir_all(&directory)?;
     let (gif, png) = (directory.join("cube.gif"), directory.join("cube.png"));
-    let mut film = picture::Film::create(&gif, 40)?;
+    let mut film = picture::Film::create(&gif, SIZE, 40)?;
     let progress = ProgressBar::new(FRAMES.into())
         .with_style(ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {elapsed}")?);
     let mut times = Times::default();
@@ -171,7 +171,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     for frame in 0..FRAMES {
         scene.draw(frame, &mut band, &mut times)?;
         covered += band.depth().iter().filter(|&&depth| depth != 0).count();
-        let picture = picture::rgba(&band);
+        let picture = picture::Rgba::of(&band);
         if frame == 0 {
             picture.save(&png)?;
         }

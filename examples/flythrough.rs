@@ -33,7 +33,7 @@ const FRAMES_A_PART: u32 = 6;
 const FRAMES: u32 = FRAMES_A_PART * FLIGHT.len() as u32;
 /// The frame that becomes the PNG.
 const SHOWN: u32 = 17;
-const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/assets");
+const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets");
 /// Its licence asks for it wherever the map is shown.
 const CREDIT: &str = "Earth: Solar System Scope, CC BY 4.0";
 
@@ -244,13 +244,13 @@ fn run() -> Result<(), Box<dyn Error>> {
     let mut band = Band::new(SIZE, &mut pixels, &mut depth)?;
     std::fs::create_dir_all(&directory)?;
     let (gif, png) = (directory.join("flythrough.gif"), directory.join("flythrough.png"));
-    let mut film = picture::Film::create(&gif, 60)?;
+    let mut film = picture::Film::create(&gif, SIZE, 60)?;
     let progress = ProgressBar::new(FRAMES.into())
         .with_style(ProgressStyle::with_template("{bar:40} frame {pos}/{len}, {elapsed}")?);
     let mut all = Vec::new();
     for frame in 0..FRAMES {
         all.push(scene.draw(frame, &mut band)?);
-        let picture = picture::rgba(&band);
+        let picture = picture::Rgba::of(&band);
         if frame == SHOWN {
             picture.save(&png)?;
         }

@@ -3,11 +3,10 @@
 //! `Exact`; unbounded for `Affine`. No attribute leaves the range of its triangle's three vertices. And 1/w is within
 //! one step of a 16-bit depth buffer.
 //!
-//! `cargo test --test attributes -- --nocapture` prints the largest errors by quality, ratio of w and family.
+//! `cargo test attributes:: -- --nocapture` prints the largest errors by quality, ratio of w and family.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::RefCell;
 use std::fmt;

@@ -3,8 +3,7 @@
 //!
 //! embedded-graphics' own mock display says what the pixels are.
 
-mod common;
-mod reference;
+use crate::common;
 
 use common::{Counting, Recording, Strip, for_all};
 use fixel::embedded_graphics::geometry::AngleUnit;

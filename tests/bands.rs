@@ -1,8 +1,7 @@
 //! The promise: a display list rendered in bands of any height, by one core or two, shows the bytes of a whole frame that is
 //! drawn at once; only what changed is sent, and nothing is missed; a full list says so and is as it was.
 
-mod common;
-mod reference;
+use crate::common;
 
 use std::cell::Cell;
 use std::convert::Infallible;

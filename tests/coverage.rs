@@ -5,8 +5,7 @@
 //! their common outline says, which no triangle takes part in.
 #![allow(clippy::float_arithmetic, reason = "one kind of surface is turned and projected in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::Cell;
 

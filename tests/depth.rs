@@ -1,8 +1,7 @@
 //! The promise: depth is 16-bit near/w, 1 … 65535, 0 is cleared; larger is nearer, strictly nearer wins, ties keep
 //! what was drawn first. And the same bytes for every band height.
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::Cell;
 

@@ -2,8 +2,7 @@
 //! the screen a target shows, nothing outside it is drawn, and no pixel twice; a display's error ends the drawing.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use common::generate::{Family, GUARD_BAND, place, places, triangle};
 use common::{Strip, for_all, perspective, screen_vertex};
@@ -412,7 +411,8 @@ fn what_a_pixel_shows_does_not_depend_on_what_else_is_shown_400_cases() {
 
 /// A card of 64 × 64 texels and the same as a mesh, for its front or its back.
 fn as_mesh(size: [I16F16; 2], is_back: bool) -> ([Vertex; 4], [[u16; 3]; 2]) {
-    let [x, y] = size.map(|side| side.to_num::<f32>() / 2.0);
+    // As large as a mesh can be, which is where a card ends too.
+    let [x, y] = size.map(|side| (side.to_num::<f32>() / 2.0).clamp(-7.999_756, 7.999_756));
     let (low, high) = (I12F4::from_bits(1), I12F4::from_bits(64 * 16 - 1));
     let (left, right) = if is_back { (high, low) } else { (low, high) };
     let vertices = [

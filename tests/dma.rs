@@ -5,8 +5,7 @@
 
 #[path = "common/bus.rs"]
 mod bus;
-mod common;
-mod reference;
+use crate::common;
 
 use std::cell::Cell;
 use std::convert::Infallible;

@@ -2,9 +2,6 @@
 //! every format and the ways to describe nothing at all, each by name and in every combination; `tests/robustness.rs`
 //! has random ones.
 
-mod common;
-mod reference;
-
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I12F4, I16F16, U10F22};

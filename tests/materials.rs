@@ -3,8 +3,7 @@
 //! within that bound of the exact one. Never one from outside the range of the triangle's three vertices.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::Cell;
 

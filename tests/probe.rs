@@ -1,11 +1,10 @@
 //! The promise: `examples/probe.rs` writes what the pipeline did at every pixel, which is what the reference says within
 //! the contract's bounds; and a bad file gets a message and exit code 2, never a panic.
 //!
-//! `cargo test --test probe -- --nocapture` prints the largest errors by quality and ratio of w.
+//! `cargo test probe:: -- --nocapture` prints the largest errors by quality and ratio of w.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::collections::HashMap;
 use std::env::{self, consts::EXE_SUFFIX};
@@ -115,7 +114,7 @@ fn small() -> Case {
 // --- Running it ---
 
 /// The example, which cargo puts next to the tests. It is built here where it is missing or too old, as
-/// `cargo test --test probe` leaves it.
+/// `cargo test probe::` leaves it.
 fn executable() -> &'static Path {
     static EXECUTABLE: OnceLock<PathBuf> = OnceLock::new();
     EXECUTABLE.get_or_init(|| {

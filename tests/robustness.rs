@@ -1,8 +1,7 @@
 //! The promise: no input panics, none writes outside the target, none overflows. These tests run with overflow checks
 //! and debug assertions, and feed everything that a type can hold.
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use common::generate::{GUARD_BAND, strip};
 use common::perspective::mesh_case;

@@ -2,11 +2,10 @@
 //! is nearer than ¼ unit the error grows no faster than 1/w; `Camera::project` and `Camera::unproject` agree with that;
 //! nothing that is seen is left out with its bounding sphere; the counts of `Stats` add up.
 //!
-//! `cargo test --test transform -- --nocapture` prints the largest errors, and transforms per vertex.
+//! `cargo test transform:: -- --nocapture` prints the largest errors, and transforms per vertex.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::RefCell;
 use std::marker::PhantomData;

@@ -23,11 +23,10 @@
 //! right, the snapped corners are known. There the pixels must be exactly those of the exact integer
 //! rasterizer, and attributes within the contract's bound with nothing taken off.
 //!
-//! `cargo test --test views -- --nocapture` prints how many pixels were decided, and the largest errors.
+//! `cargo test views:: -- --nocapture` prints how many pixels were decided, and the largest errors.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
-mod common;
-mod reference;
+use crate::{common, reference};
 
 use std::cell::RefCell;
 use std::marker::PhantomData;

@@ -2,7 +2,7 @@
 //! make every other test agree with a mistake.
 #![allow(clippy::float_arithmetic, reason = "the reference reads its exact fractions as f64")]
 
-mod reference;
+use crate::reference;
 
 use reference::{ATTRIBUTES, Corner, Facing, Sample, Triangle, UNIT};
 

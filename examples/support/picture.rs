@@ -1,14 +1,11 @@
 //! What the examples share: pictures in, pictures out.
 
-use embedded_graphics::{geometry::Dimensions, pixelcolor::Rgb565, prelude::RgbColor};
+use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::{Band, DepthFormat, Texture};
-use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, ImageResult, RgbaImage};
 use std::error::Error;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{BufReader, BufWriter};
 use std::path::Path;
-use std::time::Duration;
 
 /// A decoded picture as RGB565 words.
 pub struct Picture {
@@ -18,18 +15,19 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Decodes a PNG, each channel times `tint`.
+    /// Decodes a PNG, or a JPEG that is named so, each channel times `tint`.
     #[expect(clippy::float_arithmetic, reason = "on a desktop")]
     pub fn open(path: &Path, tint: [f32; 3]) -> Result<Self, Box<dyn Error>> {
         let in_file = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let image = image::open(path).map_err(|error| in_file(&error))?.into_rgb8();
-        let (width, height) = image.dimensions();
+        let is_jpeg = path.extension().is_some_and(|extension| extension == "jpg");
+        let decoded = if is_jpeg { decode_jpeg(path) } else { decode_png(path) };
+        let (width, height, pixels) = decoded.map_err(|error| in_file(&error))?;
         if !width.is_power_of_two() || !height.is_power_of_two() {
             return Err(in_file(&format!("{width}x{height}: a texture's sides are powers of two")).into());
         }
-        let texels = image.pixels().map(|pixel| {
+        let texels = pixels.iter().map(|pixel| {
             let channel =
-                |i: usize, max: f32| (f32::from(pixel.0[i]) / 255.0 * tint[i] * max).round().min(max) as u16;
+                |i: usize, max: f32| (f32::from(pixel[i]) / 255.0 * tint[i] * max).round().min(max) as u16;
             channel(0, 31.0) << 11 | channel(1, 63.0) << 5 | channel(2, 31.0)
         });
         let picture = Self {
@@ -73,30 +71,87 @@ impl Picture {
     }
 }
 
-/// A band as a picture with 8 bits a channel.
-pub fn rgba<D: DepthFormat>(band: &Band<'_, Rgb565, D>) -> RgbaImage {
-    let size = band.bounding_box().size;
-    let widen = |value: u8, bits: u32| (u32::from(value) * 255 / ((1 << bits) - 1)) as u8;
-    let bytes = band.colors().flat_map(|c| [widen(c.r(), 5), widen(c.g(), 6), widen(c.b(), 5), 255]);
-    RgbaImage::from_raw(size.width, size.height, bytes.collect()).unwrap_or_default()
+/// Width, height, and red, green and blue of each pixel.
+type Decoded = (u32, u32, Vec<[u8; 3]>);
+
+fn decode_png(path: &Path) -> Result<Decoded, Box<dyn Error>> {
+    let mut decoder = png::Decoder::new(BufReader::new(File::open(path)?));
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info()?;
+    let mut bytes = vec![0; reader.output_buffer_size().ok_or("too large")?];
+    let info = reader.next_frame(&mut bytes)?;
+    let bytes = bytes.get(..info.buffer_size()).unwrap_or_default();
+    let pixels = bytes.chunks_exact(info.color_type.samples()).map(|pixel| match *pixel {
+        [red, green, blue, ..] => [red, green, blue],
+        [gray, ..] => [gray; 3],
+        [] => [0; 3],
+    });
+    Ok((info.width, info.height, pixels.collect()))
+}
+
+fn decode_jpeg(path: &Path) -> Result<Decoded, Box<dyn Error>> {
+    let mut decoder = zune_jpeg::JpegDecoder::new(BufReader::new(File::open(path)?));
+    let bytes = decoder.decode()?; // red, green and blue unless told otherwise
+    let (width, height) = decoder.dimensions().ok_or("no size")?;
+    Ok((width.try_into()?, height.try_into()?, bytes.as_chunks().0.to_vec()))
+}
+
+/// A picture to be saved: red, green, blue and 255 of each pixel.
+pub struct Rgba {
+    size: Size,
+    bytes: Vec<u8>,
+}
+
+impl Rgba {
+    /// From as many colours as `size` has pixels.
+    pub fn new(size: Size, colors: impl Iterator<Item = Rgb565>) -> Self {
+        let widen = |value: u8, bits: u32| (u32::from(value) * 255 / ((1 << bits) - 1)) as u8;
+        let bytes = colors.flat_map(|c| [widen(c.r(), 5), widen(c.g(), 6), widen(c.b(), 5), 255]);
+        Self { size, bytes: bytes.collect() }
+    }
+
+    /// What a band shows.
+    #[allow(dead_code, reason = "cards are drawn to no band")]
+    pub fn of<D: DepthFormat>(band: &Band<'_, Rgb565, D>) -> Self {
+        Self::new(band.size(), band.colors())
+    }
+
+    /// Writes a PNG.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Box<dyn Error>> {
+        let file = create(path.as_ref())?;
+        let mut encoder = png::Encoder::new(file, self.size.width, self.size.height);
+        encoder.set_color(png::ColorType::Rgba);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.bytes)?;
+        Ok(writer.finish()?)
+    }
+}
+
+fn create(path: &Path) -> Result<BufWriter<File>, Box<dyn Error>> {
+    let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(BufWriter::new(file))
 }
 
 /// An animated GIF that repeats.
 pub struct Film {
-    encoder: GifEncoder<BufWriter<File>>,
-    delay: Delay,
+    encoder: gif::Encoder<BufWriter<File>>,
+    /// In 10 ms.
+    delay: u16,
 }
 
 impl Film {
-    pub fn create(path: &Path, milliseconds_a_frame: u64) -> Result<Self, Box<dyn Error>> {
-        let file = File::create(path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let mut encoder = GifEncoder::new_with_speed(BufWriter::new(file), 10);
-        encoder.set_repeat(Repeat::Infinite)?;
-        let delay = Delay::from_saturating_duration(Duration::from_millis(milliseconds_a_frame));
-        Ok(Self { encoder, delay })
+    pub fn create(path: &Path, size: Size, milliseconds_a_frame: u16) -> Result<Self, Box<dyn Error>> {
+        let (width, height) = (size.width.try_into()?, size.height.try_into()?);
+        let mut encoder = gif::Encoder::new(create(path)?, width, height, &[])?;
+        encoder.set_repeat(gif::Repeat::Infinite)?;
+        Ok(Self { encoder, delay: milliseconds_a_frame / 10 })
     }
 
-    pub fn frame(&mut self, picture: RgbaImage) -> ImageResult<()> {
-        self.encoder.encode_frame(Frame::from_parts(picture, 0, 0, self.delay))
+    pub fn frame(&mut self, mut picture: Rgba) -> Result<(), Box<dyn Error>> {
+        let (width, height) = (picture.size.width.try_into()?, picture.size.height.try_into()?);
+        // 10 of 1 … 30 for how fast the palette of 256 colours is found.
+        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut picture.bytes, 10);
+        frame.delay = self.delay;
+        Ok(self.encoder.write_frame(&frame)?)
     }
 }

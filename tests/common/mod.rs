@@ -1,8 +1,6 @@
 //! What the tests share: how many cases to run, formats that record what the pipeline did to each pixel, and the way
 //! from the reference's plain integers to the crate's types and back.
 
-// Every test file includes this module and uses a part of it.
-#![allow(dead_code)]
 #![allow(clippy::float_arithmetic, reason = "only the crate is to do without")]
 
 pub(crate) mod generate;

@@ -6,8 +6,6 @@
 //!
 //! Its own tests are in `tests/yardstick.rs`.
 
-// Every test file includes this module and uses a part of it.
-#![allow(dead_code)]
 #![allow(clippy::float_arithmetic, reason = "exact fractions are at last read as f64")]
 
 pub(crate) mod view;
