@@ -6,7 +6,7 @@
 //! | | promise |
 //! |---|---|
 //! | axes | right-handed; +x right, +y up, the camera looks along −z; screen (0, 0) top left, y down, pixel centres at +½ |
-//! | facing | counter-clockwise on the screen is the front; [`Cull`] leaves out backs (default), fronts, or none |
+//! | facing | counter-clockwise on the screen is the front; [`Cull`] leaves out backs (default), fronts, or none; a mirrored pose keeps fronts fronts, and a mirrored camera too |
 //! | positions | snapped to 1/16 pixel; no vertex is rounded to whole pixels, anywhere |
 //! | coverage | top-left rule, exact: of the triangles that share an edge or a vertex exactly one covers a pixel centre that lies on it. No cracks, no double pixels, also after clipping |
 //! | perspective | [`QuarterPixel`], the default: every attribute is within ¼ pixel of exact, that is, its error divided by its largest exact change over one pixel step in x or y (or by 1 texel, or 1/255, if that is more). [`Exact`]: within 0.02. [`Affine`]: unbounded. No attribute leaves the range of its triangle's three vertices |
@@ -130,7 +130,7 @@ mod target;
 pub use embedded_graphics;
 pub use fixed;
 
-pub use math::{Pose, Quaternion, Turn, Vec3};
+pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use pipeline::{
     Affine, Coloring, Cull, Exact, Inputs, Pixels, Quality, QuarterPixel, RangeError, ScreenVertex, Shader,
     Stats, Varying, draw_triangle,

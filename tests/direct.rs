@@ -446,8 +446,11 @@ fn a_posed_picture_is_its_mesh_in_a_band_also_clipped_1000_cases() {
     let cameras = (20.0..200.0_f32, prop::bool::weighted(0.2), -20..20_i32);
     let (clipped, seen) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
     let view = prop::option::of(((0..50_i32, 0..40_i32), (0..60_u32, 0..60_u32)));
-    let cases = (poses, [sides(), sides()], cameras, view);
-    for_all("direct: poses", 1000, cases, |((turns, [x, y, z]), size, (focal, orthographic, left), view)| {
+    let scale = || prop_oneof![4 => Just(1.0), 1 => 0.2..2.0_f64].prop_map(U10F22::from_num);
+    let scales = ([scale(), scale(), scale()], prop::option::weighted(0.3, 0..3_usize));
+    let cases = ((poses, scales), [sides(), sides()], cameras, view);
+    for_all("direct: poses", 1000, cases, |(poses, size, (focal, orthographic, left), view)| {
+        let ((turns, [x, y, z]), (stretch, mirror)) = poses;
         // The camera's picture ends within the band.
         let (strip, screen) = (Strip::new(120, 64, 0), Size::new(96, 64));
         let camera = if orthographic {
@@ -457,7 +460,8 @@ fn a_posed_picture_is_its_mesh_in_a_band_also_clipped_1000_cases() {
         };
         let camera = camera.near(0.3).viewport(Point::new(left, 0));
         let [yaw, pitch, roll] = turns.map(Turn::from_raw);
-        let pose = Pose::from_euler(yaw, pitch, roll).at(Vec3::lit(x, y, z));
+        let pose = Pose::from_euler(yaw, pitch, roll).at(Vec3::lit(x, y, z)).stretched(stretch);
+        let pose = mirrored(pose, mirror);
         let mut stats = fixel::Stats::default();
         let mut expected = in_band::<Rgb565>(strip, |band| {
             for (texture, cull, is_back) in [(&front, Cull::Back, false), (&back, Cull::Front, true)] {
@@ -488,6 +492,14 @@ fn a_posed_picture_is_its_mesh_in_a_band_also_clipped_1000_cases() {
     assert!(seen.get() > common::cases(1000) / 3 && clipped.get() > common::cases(1000) / 20);
 }
 
+/// With one axis turned round.
+fn mirrored(mut pose: Pose, axis: Option<usize>) -> Pose {
+    if let Some(axis) = axis {
+        pose.rotation.iter_mut().for_each(|row| row[axis] = row[axis].saturating_neg());
+    }
+    pose
+}
+
 /// A card around the middle of the mock display, turned about its vertical axis.
 fn turned(degrees: i32) -> (Camera, Pose, [I16F16; 2]) {
     let camera = Camera::perspective(Turn::from_degrees(40), MOCK.size);
@@ -513,6 +525,35 @@ fn a_flipped_card_shows_its_back_upright_or_itself_mirrored_or_nothing() {
     assert_eq!(shown(170, |image| image.back(&BACK)), [Some(0x001f), Some(0x07e0)]);
     assert_eq!(shown(10, PerspectiveImage::two_sided), [Some(WHITE), Some(0xf800)]);
     assert_eq!(shown(170, PerspectiveImage::two_sided), [Some(0xf800), Some(WHITE)]);
+}
+
+#[test]
+fn a_card_in_a_mirror_shows_the_same_side_mirrored() {
+    static FRONT: Texture = Texture::new(&[WHITE, 0xf800, WHITE, 0xf800], 1, 1);
+    static BACK: Texture = Texture::new(&[0x001f, 0x07e0, 0x001f, 0x07e0], 1, 1);
+    // The card's axis and the camera's that are negated.
+    let shown = |axes: [Option<usize>; 2],
+                 sides: fn(PerspectiveImage<'static>) -> PerspectiveImage<'static>| {
+        let (camera, pose, size) = turned(10);
+        let camera = camera.pose(mirrored(*camera.placement(), axes[1]));
+        let pose = mirrored(pose, axes[0]);
+        let mut display = MockDisplay::<Rgb565>::new();
+        let Ok(()) = sides(PerspectiveImage::posed(&FRONT, &camera, &pose, size)).draw(&mut display);
+        [24, 40].map(|x| display.get_pixel(Point::new(x, 32)).map(IntoStorage::into_storage))
+    };
+    let (plain, backed): (fn(_) -> _, fn(PerspectiveImage<'static>) -> _) =
+        (|image| image, |image| image.back(&BACK));
+    // Left and right change places; the front is seen as before.
+    assert_eq!(shown([Some(0), None], plain), [Some(0xf800), Some(WHITE)]);
+    assert_eq!(shown([Some(0), None], backed), [Some(0xf800), Some(WHITE)]);
+    assert_eq!(shown([None, Some(0)], backed), [Some(0xf800), Some(WHITE)]);
+    assert_eq!(shown([Some(0), Some(0)], backed), [Some(WHITE), Some(0xf800)]);
+    // Top and bottom.
+    assert_eq!(shown([Some(1), None], backed), [Some(WHITE), Some(0xf800)]);
+    // The front is turned away: the back is seen, and what is written on it in a mirror.
+    assert_eq!(shown([Some(2), None], plain), [None, None]);
+    assert_eq!(shown([Some(2), None], backed), [Some(0x07e0), Some(0x001f)]);
+    assert_eq!(shown([Some(2), None], PerspectiveImage::two_sided), [Some(WHITE), Some(0xf800)]);
 }
 
 #[test]
@@ -692,7 +733,8 @@ fn nothing_is_too_extreme_in_the_world_3000_cases() {
     };
     let rotation =
         prop_oneof![2 => any::<[u16; 3]>().prop_map(Ok), 1 => any::<[[i16; 3]; 3]>().prop_map(Err)];
-    let scale = prop_oneof![2 => Just(1 << 22), 1 => any::<u32>(), 1 => Just(0)];
+    let scale = || prop_oneof![2 => Just(1 << 22), 1 => any::<u32>(), 1 => Just(0)];
+    let scale = prop_oneof![2 => scale().prop_map(|scale| [scale; 3]), 1 => [scale(), scale(), scale()]];
     let number = || {
         prop_oneof![
             3 => 0.01..300.0_f32,
@@ -714,7 +756,7 @@ fn nothing_is_too_extreme_in_the_world_3000_cases() {
             }
             Err(bits) => Pose { rotation: bits.map(|row| row.map(I2F14::from_bits)), ..Pose::IDENTITY },
         };
-        let pose = pose.at(Vec3::new(x, y, z)).scaled(U10F22::from_bits(scale));
+        let pose = pose.at(Vec3::new(x, y, z)).stretched(scale.map(U10F22::from_bits));
         let size = size.map(I16F16::from_bits);
         for camera in [camera, camera.near(near), camera.near(near).far(far)] {
             let image = PerspectiveImage::posed(&texture, &camera, &pose, size).two_sided();

@@ -52,7 +52,7 @@ impl<F: PixelFormat> Shader<F> for Timed {
         Shader::<F>::cull(&self.material)
     }
 
-    fn coloring(&self, pose: &Pose) -> Coloring {
+    fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
         Shader::<F>::coloring(&self.material, pose)
     }
 

@@ -580,11 +580,11 @@ fn view_of(case: &MeshCase) -> View {
     let scale = 2f64.powi(((squares / 3.0).log2() / 2.0).round() as i32);
     let pose = Placement {
         rotation: case.matrix.map(|[a, b, c, _]| [a, b, c].map(|at| f64::from(at) / scale)),
-        scale,
+        scale: [scale; 3],
         translation: case.matrix.map(|row| f64::from(row[3])),
     };
     let rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let eye = Placement { rotation, scale: 1.0, translation: [0.0; 3] };
+    let eye = Placement { rotation, scale: [1.0; 3], translation: [0.0; 3] };
     let center = case.size.map(|side| f64::from(side) / 2.0);
     let (focal, near) = (f64::from(case.focal), f64::from(case.near));
     View::new(Lens { focal, center, near, far: f64::INFINITY, orthographic: false }, eye, pose)

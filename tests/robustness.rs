@@ -345,11 +345,14 @@ fn turned() -> BoxedStrategy<Pose> {
 }
 
 fn wild_pose() -> BoxedStrategy<Pose> {
-    let scale = prop_oneof![
-        2 => number().prop_map(|scale| Pose::IDENTITY.scaled_lit(scale).scale),
-        1 => any::<u32>().prop_map(U10F22::from_bits),
-        2 => Just(U10F22::ONE),
-    ];
+    let scale = || {
+        prop_oneof![
+            2 => number().prop_map(|scale| Pose::IDENTITY.scaled_lit(scale).scale[0]),
+            1 => any::<u32>().prop_map(U10F22::from_bits),
+            2 => Just(U10F22::ONE),
+        ]
+    };
+    let scale = prop_oneof![2 => scale().prop_map(|scale| [scale; 3]), 1 => [scale(), scale(), scale()]];
     let wild = any::<[[i16; 3]; 3]>().prop_map(|rows| rows.map(|row| row.map(I2F14::from_bits)));
     let rotation = prop_oneof![3 => turned().prop_map(|pose| pose.rotation), 1 => wild];
     (rotation, scale, vec3())

@@ -13,11 +13,13 @@ use std::marker::PhantomData;
 
 use common::view::{Model, Numbered, lens, placement, position, view};
 use common::{Counting, Drawn, Record, Recording, Strip, for_all};
+use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::{Point, Size};
-use fixel::fixed::types::{I4F12, I12F4, I16F16, U10F22};
+use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U10F22};
 use fixel::shapes::{Shape, cube, grid, icosphere, torus};
 use fixel::{
-    Band, Camera, Cull, Exact, Inputs, Mesh, Pose, Quaternion, Shader, Stats, Turn, Varying, Vec3, Vertex,
+    Band, Camera, Cull, Exact, Inputs, Light, Lights, Material, Mesh, Pose, Quaternion, Shader, Stats, Turn,
+    Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::view::{Lens, Placement};
@@ -247,25 +249,82 @@ static CUBE: Shape<24, 12> = cube(12.0, [64, 64]);
 
 #[test]
 fn no_mesh_is_left_out_that_has_a_pixel_and_counts_add_up_in_4_000_cases() {
+    seen_or_left_out("left out", 4_000, eyes(), turned());
+}
+
+#[test]
+fn no_stretched_or_mirrored_mesh_is_left_out_and_fronts_stay_fronts_in_4_000_cases() {
+    seen_or_left_out("stretched, mirrored", 4_000, mirrored_eyes(), stretched());
+}
+
+/// A pose at the origin that turns and scales, and how long an axis of it is.
+fn turned() -> impl Strategy<Value = (Pose, f64)> {
+    (-3.0..3.0_f64, turns()).prop_map(|(scale, [a, b, c])| {
+        let scale = U10F22::from_num(10_f64.powf(scale));
+        (Pose::from_quaternion(Quaternion::from_euler(a, b, c)).scaled(scale), scale.to_num())
+    })
+}
+
+/// As [`turned`], with other sizes and signs along the axes of the mesh.
+fn stretched() -> impl Strategy<Value = (Pose, f64)> {
+    let factor = || prop_oneof![1 => Just(1.0), 2 => 0.05..1.9_f64];
+    let factors = ([factor(), factor(), factor()], any::<[bool; 3]>(), any::<bool>());
+    (turned(), factors).prop_map(|((pose, size), (factors, signs, by_matrix))| {
+        // Half by the matrix, half by the scales.
+        let rotation = pose.rotation.map(|row| {
+            [0, 1, 2].map(|axis| {
+                let sign = if signs[axis] { -1.0 } else { 1.0 };
+                let factor = if by_matrix { factors[axis] } else { 1.0 };
+                I2F14::saturating_from_num(row[axis].to_num::<f64>() * factor * sign)
+            })
+        });
+        let scale = pose.scale[0].to_num::<f64>();
+        let scales =
+            factors.map(|factor| U10F22::from_num(if by_matrix { scale } else { scale * factor * 0.5 }));
+        (Pose { rotation, ..pose }.stretched(scales), size)
+    })
+}
+
+/// Cameras of which half show a mirror image.
+fn mirrored_eyes() -> impl Strategy<Value = Eye> {
+    (eyes(), prop::option::of(0..3_usize)).prop_map(|(eye, column)| match column {
+        Some(column) => Eye { camera: eye.camera.pose(mirrored(eye.camera.placement(), column)), ..eye },
+        None => eye,
+    })
+}
+
+fn mirrored(pose: &Pose, column: usize) -> Pose {
+    let mut pose = *pose;
+    for row in &mut pose.rotation {
+        row[column] = row[column].saturating_neg();
+    }
+    pose
+}
+
+/// A cube that is seen, or not, in so many poses: drawn where `f64` says, its fronts, its backs or both.
+fn seen_or_left_out(
+    name: &str,
+    cases: u32,
+    eyes: impl Strategy<Value = Eye>,
+    poses: impl Strategy<Value = (Pose, f64)>,
+) {
     let counts = RefCell::new([0_u32; 4]);
     let model = Model::new(&CUBE.mesh());
     let mesh = model.mesh();
     let place = ([-400.0..400.0_f64, -300.0..300.0], -4.0..20.0_f64);
-    let cases =
-        (eyes(), place, -3.0..3.0_f64, turns(), 0..3_usize, prop::option::weighted(0.3, 0.5..30.0_f64));
-    for_all("left out", 4_000, cases, |(eye, (at, w), scale, [a, b, c], cull, far)| {
-        let scale = U10F22::from_num(10_f64.powf(scale));
-        let size = scale.to_num::<f64>();
+    let all = (eyes, place, poses, 0..3_usize, prop::option::weighted(0.3, 0.5..30.0_f64));
+    for_all(name, cases, all, |(eye, (at, w), (pose, size), cull, far)| {
         let eye = match far {
             Some(far) => Eye { camera: eye.camera.far((far * size) as f32), ..eye },
             None => eye,
         };
-        let stands = world(eye.place(eye.beside(at, w * size)));
-        let pose = Pose::from_quaternion(Quaternion::from_euler(a, b, c)).scaled(scale).at(stands);
+        let pose = pose.at(world(eye.place(eye.beside(at, w * size))));
         let cull = [Cull::None, Cull::Back, Cull::Front][cull];
         let mut stats = Stats::default();
         let drawn = draw(&eye, &pose, &mesh, cull, &mut stats);
         let exact = view(&eye.camera, &pose, eye.orthographic);
+        // In a mirror image fronts are clockwise.
+        let hand = (exact.handedness()).signum();
         let facets = model
             .triangles
             .iter()
@@ -273,8 +332,8 @@ fn no_mesh_is_left_out_that_has_a_pixel_and_counts_add_up_in_4_000_cases() {
         let facets: Vec<_> = facets
             .filter(|facet| match cull {
                 Cull::None => facet.turn != 0.0,
-                Cull::Back => facet.turn < 0.0,
-                Cull::Front => facet.turn > 0.0,
+                Cull::Back => facet.turn * hand < 0.0,
+                Cull::Front => facet.turn * hand > 0.0,
             })
             .collect();
         let mut seen = false;
@@ -326,9 +385,152 @@ fn no_mesh_is_left_out_that_has_a_pixel_and_counts_add_up_in_4_000_cases() {
     });
     let [seen, out, nothing, clipped] = counts.into_inner();
     println!(
-        "left out: {seen} cubes seen, {clipped} of them or of the others clipped, {out} left out whole, {nothing} drawn in vain"
+        "{name}: {seen} cubes seen, {clipped} of them or of the others clipped, {out} left out whole, {nothing} drawn in vain"
     );
-    assert!(seen > common::cases(4_000) / 10 && out > common::cases(4_000) / 10);
+    assert!(seen > common::cases(cases) / 10 && out > common::cases(cases) / 10);
+}
+
+/// ±1 across and ±0.2 up and down, in the plane z = 0.
+static STRIP_OF_QUAD: [Vertex; 4] = [
+    Vertex::new(-1.0, -0.2, 0.0),
+    Vertex::new(1.0, -0.2, 0.0),
+    Vertex::new(1.0, 0.2, 0.0),
+    Vertex::new(-1.0, 0.2, 0.0),
+];
+
+#[test]
+fn a_quad_that_a_matrix_stretches_into_the_picture_is_drawn() {
+    let screen = Strip::new(64, 64, 0);
+    let camera = Camera::perspective(Turn::from_degrees(60), screen.size());
+    let mesh = Mesh::new(&STRIP_OF_QUAD, &[[0, 1, 2], [0, 2, 3]]);
+    let mut rotation = Pose::IDENTITY.rotation;
+    rotation[0][0] = I2F14::lit("1.9");
+    for (x, near_side) in [(2.2, 0.3), (2.4, 0.5)] {
+        let pose = Pose { rotation, ..Pose::IDENTITY }.at(Vec3::lit(x, 0.0, -2.0));
+        let mut drawn = Record::blank(screen);
+        let mut band = Band::<Recording, Counting>::new(screen.size(), &mut drawn.pixels, &mut drawn.depth)
+            .expect("the sizes agree");
+        let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
+        camera.draw(&mesh, &pose, &shader, &mut band);
+        // 32 px of half a screen are tan 30° of a half; from x = 2.4 - 1.9 to the right border, 0.2 up and down.
+        let focal = 32.0 * 3.0_f64.sqrt();
+        let (left, half) = (32.0 + focal * near_side / 2.0, focal * 0.2 / 2.0);
+        let columns = (0..64).filter(|x| f64::from(*x) + 0.5 > left).count();
+        let rows = (0..64).filter(|y| (f64::from(*y) + 0.5 - 32.0).abs() < half).count();
+        let count = drawn.iter().filter(|(_, _, met)| met.times == 1).count();
+        assert_eq!(count, columns * rows, "at x = {x}");
+    }
+}
+
+#[test]
+fn a_pillar_beside_the_picture_is_left_out_whole() {
+    let screen = Strip::new(64, 64, 0);
+    // It sees 10 · tan 30° = 5.77 to each side there. 8 units of the pillar are 800 up and down, and 0.8 wide.
+    let camera = Camera::perspective(Turn::from_degrees(60), screen.size());
+    let pillar = Pose::IDENTITY.stretched_lit(0.1, 100.0, 0.1);
+    for (x, is_seen) in [(6.0, true), (-6.0, true), (8.0, false), (-8.0, false)] {
+        let mut drawn = Record::blank(screen);
+        let mut band = Band::<Recording, Counting>::new(screen.size(), &mut drawn.pixels, &mut drawn.depth)
+            .expect("the sizes agree");
+        let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
+        let mut stats = Stats::default();
+        let pose = pillar.at(Vec3::lit(x, 0.0, -10.0));
+        camera.draw_counted(&CUBE.mesh(), &pose, &shader, &mut band, &mut stats);
+        assert_eq!(stats.meshes_out_of_sight, u32::from(!is_seen), "at {x}");
+        assert_eq!(drawn.iter().any(|(_, _, met)| met.times > 0), is_seen, "at {x}");
+    }
+}
+
+/// How much light of a source arrives at a place of the world that faces so: 0 … 1.
+fn arrives(light: &Source, place: [f64; 3], normal: [f64; 3]) -> f64 {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let length = |a: [f64; 3]| dot(a, a).sqrt();
+    let (to_light, attenuation) = match *light {
+        Source::Direction(direction) => (numbers(direction).map(|at| -at), 1.0),
+        Source::Point(at, range) => {
+            let at = numbers(at);
+            let offset = [0, 1, 2].map(|i| at[i] - place[i]);
+            let left = 1.0 - (length(offset) / range.to_num::<f64>()).powi(2);
+            (offset, left.max(0.0).powi(2))
+        }
+    };
+    let cosine = dot(normal, to_light) / (length(normal) * length(to_light));
+    if cosine.is_nan() { 0.0 } else { cosine * attenuation }
+}
+
+/// A light, known to the test.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    Direction(Vec3),
+    Point(Vec3, I16F16),
+}
+
+#[test]
+fn faces_of_stretched_and_mirrored_cubes_have_the_light_of_their_outer_sides_in_1_000_cases() {
+    let model = Model::new(&CUBE.mesh());
+    let mesh = model.mesh();
+    let direction = || [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0];
+    let around = ([-60.0..60.0_f64, -40.0..40.0], 16.0..60.0_f64);
+    let cases = (mirrored_eyes(), around, stretched(), any::<bool>(), direction(), 0..3_usize);
+    let (pixels, bright, worst) = (RefCell::new(0_u32), RefCell::new(0_u32), RefCell::new(0.0_f64));
+    for_all("light on faces", 1_000, cases, |(eye, (at, w), (pose, size), point, light, cull)| {
+        let pose = pose.at(world(eye.place(eye.beside(at, w * size))));
+        let stands = numbers(pose.translation);
+        let source = if point {
+            // Somewhere around it, as far as it is large.
+            let at = [0, 1, 2].map(|i| stands[i] + light[i] * 20.0 * size);
+            Source::Point(world(at), I16F16::saturating_from_num(60.0 * size))
+        } else {
+            Source::Direction(world(light))
+        };
+        let lights = [match source {
+            Source::Point(at, range) => Light::point(at, [255; 3], range),
+            Source::Direction(direction) => Light::directional(direction, [255; 3]),
+        }];
+        let lights = Lights::new([0; 3], &lights);
+        let white = Material::flat(Rgb565::new(31, 63, 31)).lit(&lights).faceted().exact();
+        let (material, two_sided) = match cull {
+            0 => (white, false),
+            1 => (white.cull(Cull::Front), false),
+            _ => (white.two_sided().cull(Cull::Back), true),
+        };
+        let mut drawn = Record::blank(STRIP);
+        let mut band = Band::<Recording, Counting>::new(SCREEN, &mut drawn.pixels, &mut drawn.depth)
+            .expect("the sizes agree");
+        eye.camera.draw(&mesh, &pose, &material, &mut band);
+        let exact = view(&eye.camera, &pose, eye.orthographic);
+        let hand = exact.handedness().signum() * if cull == 1 { -1.0 } else { 1.0 };
+        let facets: Vec<_> = model
+            .triangles
+            .iter()
+            .map(|corners| corners.map(|i| position(&model.vertices[usize::from(i)])))
+            .map(|corners| (corners, exact.facet(corners)))
+            .filter(|(_, facet)| facet.turn * hand < 0.0)
+            .collect();
+        let to_world = placement(&pose);
+        for ((x, y), color, met) in drawn.iter() {
+            let point = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+            let here = facets.iter().find(|(_, facet)| facet.depth(point) > 0.125);
+            let Some((corners, _)) = here.filter(|_| eye.shows((x, y))) else { continue };
+            prop_assert!(met.times > 0, "nothing at {}, {}", x, y);
+            let middle = [0, 1, 2].map(|i| (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0);
+            let truth = arrives(&source, to_world.point(middle), to_world.outwards(*corners));
+            let truth = 255.0 * if two_sided { truth.abs() } else { truth.max(0.0) };
+            // Whole steps, rounded down.
+            let off = truth - f64::from(color.attributes[2]);
+            prop_assert!((-1.0..2.0).contains(&off), "{} of {} at {}, {}", color.attributes[2], truth, x, y);
+            *pixels.borrow_mut() += 1;
+            *bright.borrow_mut() += u32::from(truth > 20.0);
+            let worst = &mut *worst.borrow_mut();
+            *worst = worst.max((off - 0.5).abs() - 0.5);
+        }
+        Ok(())
+    });
+    let (pixels, bright, worst) = (pixels.into_inner(), bright.into_inner(), worst.into_inner());
+    println!(
+        "light on faces: {pixels} pixels, {bright} of them lit, off by {worst:.3} steps beside rounding"
+    );
+    assert!(bright > common::cases(1_000) * 100);
 }
 
 #[test]

@@ -82,6 +82,10 @@ struct Scene {
 struct Flight {
     /// Mesh units to the world, log₁₀.
     scale: f64,
+    /// How much shorter each of the mesh's axes is, log₂.
+    stretch: [f64; 3],
+    /// Which of the mesh's axes, and of the camera's, is turned round, so that a mirror image is seen.
+    mirrors: [Option<usize>; 2],
     /// Of the mesh, in turns.
     attitude: [u16; 3],
     /// The mesh's place in the world, in parts of what the world has room for.
@@ -104,17 +108,13 @@ fn flights() -> impl Strategy<Value = Flight> {
     let scale = prop_oneof![2 => -3.0..3.0_f64, 1 => Just(0.0)];
     let places = ([place.clone(), place.clone(), place], [eye(), eye(), eye()]);
     let turns = (any::<[u16; 3]>(), any::<[u16; 3]>(), prop::option::weighted(0.6, 0..2000_usize));
-    (scale, places, turns, lens, any::<bool>()).prop_map(
-        |(scale, (place, eye), (attitude, heading, target), (focal, near), exact)| Flight {
-            scale,
-            attitude,
-            place,
-            eye,
-            heading,
-            target,
-            focal,
-            near,
-            exact,
+    let shorter = || prop_oneof![2 => Just(0.0), 1 => -4.0..0.0_f64];
+    let stretch = prop_oneof![2 => Just([0.0; 3]).boxed(), 1 => [shorter(), shorter(), shorter()].boxed()];
+    let mirror = || prop::option::weighted(0.2, 0..3_usize);
+    let kind = (any::<bool>(), stretch, [mirror(), mirror()]);
+    (scale, places, turns, lens, kind).prop_map(
+        |(scale, (place, eye), (attitude, heading, target), (focal, near), (exact, stretch, mirrors))| {
+            Flight { scale, stretch, mirrors, attitude, place, eye, heading, target, focal, near, exact }
         },
     )
 }
@@ -131,24 +131,23 @@ impl Flight {
         // The mesh and the camera around it within ±32768.
         let room = 32000.0 - 24.0 * scale.to_num::<f64>();
         let attitude = Quaternion::from_euler(yaw, pitch, roll);
-        Pose::from_quaternion(attitude).scaled(scale).at(world(self.place.map(|at| at * room)))
+        let pose = mirrored(Pose::from_quaternion(attitude), self.mirrors[0]);
+        let scales =
+            self.stretch.map(|log2| U10F22::saturating_from_num(scale.to_num::<f64>() * 2_f64.powf(log2)));
+        pose.stretched(scales).at(world(self.place.map(|at| at * room)))
     }
 
     fn camera(&self, scene: &Scene, pose: &Pose) -> Camera {
         let to_world = common::view::placement(pose);
-        let in_world = |at: [f64; 3]| {
-            world([0, 1, 2].map(|i| {
-                let turned: f64 = (0..3).map(|k| to_world.rotation[i][k] * at[k]).sum();
-                turned * to_world.scale + to_world.translation[i]
-            }))
-        };
-        let near = (10_f64.powf(self.near) * to_world.scale) as f32;
+        let in_world = |at: [f64; 3]| world(to_world.point(at));
+        let scale = to_world.scale.iter().copied().fold(0.0, f64::max);
+        let near = (10_f64.powf(self.near) * scale) as f32;
         let camera = Camera::focal(self.focal, Size::new(SCREEN.width, SCREEN.height))
             .near(near)
             .at(in_world([0, 1, 2].map(|i| self.eye[i] * scene.reach[i])));
         let [yaw, pitch, roll] = self.heading.map(Turn::from_raw);
         let camera = camera.heading(yaw, pitch, roll);
-        match self.target {
+        let camera = match self.target {
             Some(vertex) => {
                 let vertex = &scene.model.vertices[vertex % scene.model.vertices.len()];
                 camera.look_at(
@@ -157,8 +156,17 @@ impl Flight {
                 )
             }
             None => camera,
-        }
+        };
+        camera.pose(mirrored(*camera.placement(), self.mirrors[1]))
     }
+}
+
+/// With one axis turned round.
+fn mirrored(mut pose: Pose, axis: Option<usize>) -> Pose {
+    if let Some(axis) = axis {
+        pose.rotation.iter_mut().for_each(|row| row[axis] = row[axis].saturating_neg());
+    }
+    pose
 }
 
 /// What the reference says of a pixel.
@@ -308,9 +316,11 @@ fn hold<Q: Quality>(scene: &Scene, flight: &Flight, measured: &mut Measured) -> 
     let places: Vec<_> = model.vertices.iter().map(position).collect();
     let facets: Vec<_> =
         model.triangles.iter().map(|corners| exact.facet(corners.map(|i| places[usize::from(i)]))).collect();
+    // In a mirror image fronts are clockwise.
+    let hand = exact.handedness().signum();
     let drawn: Vec<_> = facets
         .iter()
-        .map(|facet| if cull == Cull::None { facet.turn != 0.0 } else { facet.turn < 0.0 })
+        .map(|facet| if cull == Cull::None { facet.turn != 0.0 } else { facet.turn * hand < 0.0 })
         .collect();
     let said = say(model, &facets, &drawn);
     let snapped: Vec<_> = facets

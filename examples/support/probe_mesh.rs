@@ -168,7 +168,8 @@ impl Case {
         let ray = [across / focal, -down / focal, -1.0];
         let corners = self.triangles[usize::from(index)].map(|i| &self.vertices[usize::from(i)]);
         let [a, b, c] = corners.map(|vertex| {
-            let at = vertex.position.map(|at| at.to_num::<f64>() * self.pose.scale.to_num::<f64>());
+            let at: [f64; 3] =
+                [0, 1, 2].map(|i| vertex.position[i].to_num::<f64>() * self.pose.scale[i].to_num::<f64>());
             let to = [self.pose.translation.x, self.pose.translation.y, self.pose.translation.z];
             [0, 1, 2].map(|row: usize| {
                 let turn = self.pose.rotation[row].map(|element| element.to_num::<f64>());
@@ -244,8 +245,8 @@ impl Numbers {
         let [x, y, z] = translation.map(|at| I16F16::from_num(at * factor));
         let rotation =
             self.matrix.map(|[a, b, c, _]| [a, b, c].map(|element| I2F14::from_num(element / self.scale)));
-        let pose =
-            Pose { rotation, scale: U10F22::from_num(scale * factor), translation: Vec3::new(x, y, z) };
+        let pose = Pose { rotation, translation: Vec3::new(x, y, z), ..Pose::IDENTITY }
+            .scaled(U10F22::from_num(scale * factor));
         let camera = Camera::focal(self.focal as f32, self.size).near(near as f32);
 
         let mut rounded = format!(
@@ -253,7 +254,7 @@ impl Numbers {
              matrix as drawn, from mesh to eye space:",
             step * self.scale
         );
-        let as_drawn = pose.scale.to_num::<f64>() * 2f64.powi(-unit) / factor;
+        let as_drawn = pose.scale[0].to_num::<f64>() * 2f64.powi(-unit) / factor;
         for (row, to) in pose.rotation.iter().zip([x, y, z]) {
             let [a, b, c] = row.map(|element| element.to_num::<f64>() * as_drawn);
             let _ = write!(rounded, "\n  {a:e} {b:e} {c:e} {:e}", to.to_num::<f64>() / factor);

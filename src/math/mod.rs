@@ -7,7 +7,8 @@ mod turn;
 mod unit;
 mod vec;
 
-pub use pose::Pose;
+pub(crate) use pose::dot;
+pub use pose::{Pose, ScaleError};
 pub use quaternion::Quaternion;
 pub use turn::Turn;
 pub(crate) use unit::normalized;

@@ -10,34 +10,75 @@ pub(crate) const ONE: i32 = 1 << 30;
 ///
 /// One integer square root and `N` 64-bit divisions: for set-up.
 pub(crate) const fn normalized<const N: usize>(v: [i64; N]) -> Option<[i32; N]> {
-    const { assert!(N <= 4) }
-    let mut all = 0;
+    let Some(Scaled { vector, length, .. }) = Scaled::new(v) else {
+        return None;
+    };
+    let mut unit = [0; N];
     let mut i = 0;
     while i < N {
-        all |= v[i].unsigned_abs();
-        i += 1;
-    }
-    if all == 0 {
-        return None;
-    }
-    // 30 bits each, so that the sum of four squares is at most 2⁶².
-    let zeros = all.leading_zeros();
-    let mut n = [0i64; N];
-    let mut squares = 0u64;
-    i = 0;
-    while i < N {
-        n[i] = if zeros >= 34 { v[i] << (zeros - 34) } else { shift_round(v[i], 34 - zeros) };
-        squares += wide(n[i] as i32, n[i] as i32) as u64;
-        i += 1;
-    }
-    let length = squares.isqrt() as i64; // 2²⁹ … 2³¹, rounded down: 2⁻²⁹ of it at most
-    let mut unit = [0; N];
-    i = 0;
-    while i < N {
-        unit[i] = ((n[i] << 30) / length) as i32;
+        unit[i] = ((vector[i] << 30) / length) as i32;
         i += 1;
     }
     Some(renormalized(unit))
+}
+
+/// The length of a vector of up to 4 components, in their unit: within 2⁻²⁸ of itself and ½, and exact for one along an axis.
+/// One integer square root.
+pub(crate) const fn length<const N: usize>(v: [i64; N]) -> u64 {
+    let (mut most, mut sum) = (0, 0u64);
+    let mut i = 0;
+    while i < N {
+        let magnitude = v[i].unsigned_abs();
+        most = if magnitude > most { magnitude } else { most };
+        sum = sum.saturating_add(magnitude);
+        i += 1;
+    }
+    match Scaled::new(v) {
+        Some(Scaled { length, zeros, .. }) if sum > most => {
+            if zeros >= 34 {
+                shift_round(length, zeros - 34) as u64
+            } else {
+                (length as u64) << (34 - zeros)
+            }
+        }
+        _ => most,
+    }
+}
+
+/// A vector scaled so that its largest component has 30 bits.
+struct Scaled<const N: usize> {
+    vector: [i64; N],
+    /// 2²⁹ … 2³¹, rounded down: 2⁻²⁹ of it at most.
+    length: i64,
+    /// The leading zeros of the largest component before: 34 afterwards.
+    zeros: u32,
+}
+
+impl<const N: usize> Scaled<N> {
+    /// `None` for the zero vector.
+    const fn new(v: [i64; N]) -> Option<Self> {
+        const { assert!(N <= 4) }
+        let mut all = 0;
+        let mut i = 0;
+        while i < N {
+            all |= v[i].unsigned_abs();
+            i += 1;
+        }
+        if all == 0 {
+            return None;
+        }
+        // 30 bits each, so that the sum of four squares is at most 2⁶².
+        let zeros = all.leading_zeros();
+        let mut vector = [0i64; N];
+        let mut squares = 0u64;
+        i = 0;
+        while i < N {
+            vector[i] = if zeros >= 34 { v[i] << (zeros - 34) } else { shift_round(v[i], 34 - zeros) };
+            squares += wide(vector[i] as i32, vector[i] as i32) as u64;
+            i += 1;
+        }
+        Some(Self { vector, length: squares.isqrt() as i64, zeros })
+    }
 }
 
 /// The same with the length of 1, for a length that is within 2⁻¹⁰ of it: one Newton–Raphson

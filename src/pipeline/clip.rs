@@ -19,7 +19,7 @@ pub(super) use cut::MOST_CORNERS;
 use super::color::Coloring;
 use super::transform::{ToClip, focal_log2};
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_high_short, mul_round, normalised};
+use crate::num::{I12F4, I16F16, U1F31, U8F8, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 
@@ -157,36 +157,47 @@ impl Clip {
     /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
     #[inline(never)]
     pub(super) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
-        let (center, radius) = &to_clip.bounds(bounds);
-        let (w, viewport) = (i64::from(center[2]), &projection.viewport);
+        let center @ [.., w] = to_clip.place_all(bounds.center);
+        let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
+        let [before, beyond] = [i64::from(self.near) - i64::from(w), i64::from(w) - i64::from(self.far)];
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
-        if self.near >= self.far || w + *radius < i64::from(self.near) || w - radius > i64::from(self.far) {
+        if self.near >= self.far
+            || !to_clip.reaches(before, radius, (2, 0, 0))
+            || !to_clip.reaches(beyond, radius, (2, 0, 0))
+        {
             return false;
         }
-        // Each side of the viewport is a plane through the eye (or along the line of sight) that lies at a slope of
-        // side : focal length; all in 1/16 px.
-        let focal = i64::from(projection.focal.to_bits()) >> 12;
         let sides = [
             (0, -1, i32::from(viewport.left)),
             (0, 1, i32::from(viewport.left) + i32::from(viewport.width)),
             (1, -1, i32::from(viewport.top)),
             (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
         ];
-        sides.iter().all(|&(axis, sign, side)| {
-            let slope = i64::from(side) * 16 - i64::from(projection.center[axis]);
-            let across = i64::from(center[axis]) << self.scale;
-            let outside = (across - slope * i64::from(self.divisor(center[2]))) * sign;
-            let length =
-                if self.flat != 0 { focal + 1 } else { length(focal as u32, slope.unsigned_abs() as u32) };
-            outside <= (radius + 1) * length
+        sides.into_iter().all(|(axis, sign, side)| {
+            let slope = side * 16 - projection.center[axis];
+            self.reaches(to_clip, [center[axis], w], radius, (axis, sign, slope))
         })
+    }
+
+    /// Whether bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that lies at
+    /// a slope of side : focal length, in 1/16 px.
+    #[inline(never)]
+    fn reaches(
+        &self,
+        to_clip: &ToClip,
+        [across, w]: [i32; 2],
+        radius: u32,
+        (axis, sign, slope): (usize, i64, i32),
+    ) -> bool {
+        let outside = ((i64::from(across) << self.scale) - wide(self.divisor(w), slope)) * sign;
+        to_clip.reaches(outside, radius, (axis, self.scale, if self.flat != 0 { 0 } else { slope }))
     }
 
     /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another.
     pub(super) fn place(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         vertex: &Vertex,
         to: &mut ScreenVertex,
     ) -> bool {
@@ -276,22 +287,4 @@ impl Clip {
         *to_y = I12F4::from_bits(y as i16);
         range.contains(&y)
     }
-}
-
-/// Just more than √(a² + b²). The library's root divides.
-#[inline(never)]
-fn length(a: u32, b: u32) -> i64 {
-    let mut shift = 0;
-    while (a | b) >> shift >= 1 << 14 {
-        shift += 1;
-    }
-    let [a, b] = [a, b].map(|side| (side >> shift) + u32::from(shift > 0));
-    let mut root = 0;
-    for bit in (0..15).rev() {
-        let next = root | 1 << bit;
-        if next * next <= a * a + b * b {
-            root = next;
-        }
-    }
-    i64::from(root + 1) << shift
 }

@@ -5,14 +5,14 @@ use crate::scene::{Lighting, Vertex};
 
 /// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own.
 #[derive(Debug, Default)]
-pub struct Coloring {
+pub struct Coloring<'p> {
     base: Option<[u8; 3]>,
-    light: Option<Light>,
+    light: Option<Light<'p>>,
 }
 
 #[derive(Debug)]
-struct Light {
-    lighting: Lighting,
+struct Light<'p> {
+    lighting: Lighting<'p>,
     shading: Shading,
     two_sided: bool,
 }
@@ -20,35 +20,32 @@ struct Light {
 /// Where light is computed, and what computes it: a pointer, so that a program that lights nothing does without.
 #[derive(Debug)]
 enum Shading {
-    Smooth(fn(&Light, &[u8; 3], &Vertex, &mut [U8F8; 3])),
-    Faceted(fn(&Light, [&Vertex; 3]) -> [U8F8; 3]),
+    Smooth(fn(&Light<'_>, &[u8; 3], &Vertex, &mut [U8F8; 3])),
+    Faceted(fn(&Light<'_>, [&Vertex; 3]) -> [U8F8; 3]),
 }
 
-impl Light {
-    /// A colour times the light at its vertex.
-    fn at_vertex(&self, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
-        self.lighting.at_vertex(vertex, self.two_sided, to);
-        if color[0] & color[1] & color[2] != 255 {
-            for i in 0..3 {
-                to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
-            }
+/// A colour times the light at its vertex.
+fn at_vertex(light: &Light<'_>, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
+    light.lighting.at_vertex(vertex, light.two_sided, to);
+    if color[0] & color[1] & color[2] != 255 {
+        for i in 0..3 {
+            to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
         }
     }
-
-    fn at_face(&self, corners: [&Vertex; 3]) -> [U8F8; 3] {
-        self.lighting.at_face(corners.map(|vertex| vertex.position), self.two_sided)
-    }
 }
 
-impl Coloring {
+fn at_face(light: &Light<'_>, corners: [&Vertex; 3]) -> [U8F8; 3] {
+    light.lighting.at_face(corners.map(|vertex| vertex.position), light.two_sided)
+}
+
+impl<'p> Coloring<'p> {
     /// The vertices' own.
     pub(super) const OWN: Self = Self { base: None, light: None };
 
     /// `base`, or the vertices' own colour without it, times light: once a vertex, or if `faceted` once a triangle.
     #[must_use]
-    pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting, faceted: bool, two_sided: bool) -> Self {
-        let shading =
-            if faceted { Shading::Faceted(Light::at_face) } else { Shading::Smooth(Light::at_vertex) };
+    pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting<'p>, faceted: bool, two_sided: bool) -> Self {
+        let shading = if faceted { Shading::Faceted(at_face) } else { Shading::Smooth(at_vertex) };
         Self { base, light: Some(Light { lighting, shading, two_sided }) }
     }
 

@@ -252,6 +252,7 @@ struct Posed {
     clip: Clip,
     viewport: Viewport,
     is_orthographic: bool,
+    is_mirrored: bool,
 }
 
 impl Quad {
@@ -283,7 +284,8 @@ impl Quad {
             are_cut_off[i] = !clip.place(&to_clip, &Coloring::default(), &vertices[i], &mut corners[i]);
         }
         let (viewport, is_orthographic) = (projection.viewport, projection.orthographic);
-        let posed = Posed { vertices, are_cut_off, to_clip, clip, viewport, is_orthographic };
+        let is_mirrored = camera.is_mirrored() != pose.is_mirrored();
+        let posed = Posed { vertices, are_cut_off, to_clip, clip, viewport, is_orthographic, is_mirrored };
         Some(Self { corners, posed: Some(posed) })
     }
 
@@ -301,7 +303,9 @@ impl Quad {
         let posed = self.posed.as_ref();
         let mut direct = Direct::<F, T, RUN>::new(target, posed.map(|posed| &posed.viewport));
         let is_orthographic = posed.is_some_and(|posed| posed.is_orthographic);
-        for side in [false, true].into_iter().filter_map(sides) {
+        let is_mirrored = posed.is_some_and(|posed| posed.is_mirrored);
+        for mut side in [false, true].into_iter().filter_map(sides) {
+            side.cull = side.cull.of_mesh(is_mirrored);
             for (corner, [u, v]) in self.corners.iter_mut().zip(side.uv) {
                 (corner.u, corner.v) = (u.into(), v.into());
             }

@@ -36,6 +36,7 @@ pub(crate) fn draw<F, D, S>(
     S: Shader<F>,
 {
     stats.count(|stats| &mut stats.meshes);
+    let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
     let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
@@ -56,7 +57,7 @@ pub(crate) fn draw<F, D, S>(
         to_clip: &to_clip,
         clip: &clip,
         coloring,
-        cull: shader.cull(),
+        cull,
         light_face: if S::LIT && coloring.is_faceted() { Some(Placer::light_face) } else { None },
     };
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
@@ -69,7 +70,7 @@ pub(crate) fn draw<F, D, S>(
 
 /// Not inlined: what it takes is not on the stack while pixels are drawn.
 #[inline(never)]
-fn coloring<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Coloring {
+fn coloring<'p, F: PixelFormat, S: Shader<F>>(shader: &S, pose: &'p Pose) -> Coloring<'p> {
     shader.coloring(pose)
 }
 
@@ -138,7 +139,7 @@ struct Placer<'a> {
     mesh: &'a Mesh<'a>,
     to_clip: &'a ToClip,
     clip: &'a Clip,
-    coloring: &'a Coloring,
+    coloring: &'a Coloring<'a>,
     cull: Cull,
     /// [`Placer::light_face`] if there is something to do for it: a pointer, so that a program without lights has it not.
     light_face: Option<fn(&Self, &mut Cache, usize)>,

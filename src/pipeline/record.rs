@@ -22,17 +22,18 @@ pub(crate) enum Full {
 }
 
 /// What a shader wants of the vertices.
-pub(crate) struct Style {
+pub(crate) struct Style<'p> {
     cull: Cull,
     pub(crate) inputs: Inputs,
-    coloring: Coloring,
+    coloring: Coloring<'p>,
 }
 
-impl Style {
+impl<'p> Style<'p> {
     /// Not inlined: what it takes is not on the stack while a mesh is recorded.
     #[inline(never)]
-    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, pose: &Pose) -> Self {
-        Self { cull: shader.cull(), inputs: shader.inputs(), coloring: shader.coloring(pose) }
+    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, camera: &Pose, pose: &'p Pose) -> Self {
+        let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
+        Self { cull, inputs: shader.inputs(), coloring: shader.coloring(pose) }
     }
 
     fn has_color(&self) -> bool {
@@ -50,7 +51,7 @@ struct Recorder<'l, 'm> {
     mesh: &'l Mesh<'m>,
     to_clip: ToClip,
     clip: Clip,
-    style: &'l Style,
+    style: &'l Style<'l>,
     window: Window,
     /// The slot of the mesh's vertex 0, or what would be it, wrapping.
     to_slot: usize,
@@ -69,7 +70,7 @@ pub(crate) fn record(
     mesh: &Mesh<'_>,
     [camera, pose]: [&Pose; 2],
     projection: &Projection,
-    style: &Style,
+    style: &Style<'_>,
     stats: &mut impl Count,
 ) -> Result<bool, Full> {
     stats.count(|stats| &mut stats.meshes);

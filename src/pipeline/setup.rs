@@ -44,6 +44,9 @@ use crate::math::recip::Reciprocal;
 use crate::num::{mul_high, mul_round, shift_round, wide};
 
 /// Which side of a triangle is left out.
+///
+/// Of a mesh that is seen in a mirror (its pose or the camera's [is mirrored](crate::Pose::is_mirrored), but not both) fronts are
+/// those that run clockwise on the screen: what is outside stays outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cull {
     /// Triangles that run clockwise on the screen.
@@ -56,6 +59,16 @@ pub enum Cull {
 }
 
 impl Cull {
+    /// What to leave out of a mesh of which a mirror image may be seen, so that its fronts are clockwise on the screen.
+    #[inline]
+    pub(super) fn of_mesh(self, is_mirrored: bool) -> Self {
+        match self {
+            Self::Back if is_mirrored => Self::Front,
+            Self::Front if is_mirrored => Self::Back,
+            _ => self,
+        }
+    }
+
     /// By twice the area, positive clockwise on the screen.
     #[inline]
     pub(super) fn leaves_out(self, area: i32) -> bool {

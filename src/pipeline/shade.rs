@@ -128,7 +128,7 @@ pub trait Shader<F: PixelFormat> {
     }
 
     /// What colour the vertices of a mesh in this pose have, for shaders that read it: their own, unless lit.
-    fn coloring(&self, pose: &Pose) -> Coloring {
+    fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
         let _ = pose;
         Coloring::default()
     }

@@ -7,7 +7,7 @@
 
 use crate::math::Pose;
 use crate::num::{I4F12, I16F16, U8F8, mul_round, shift_round};
-use crate::scene::{Bounds, Projection};
+use crate::scene::Projection;
 
 /// A vertex in clip space: what stands before the division by w.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,6 @@ pub(super) struct ToClip {
     /// For x, y and w.
     rows: [Row; 3],
     unit_bits: i32,
-    /// The pose's, U10F22.
-    scale: u32,
 }
 
 /// From a position in the mesh to one clip coordinate.
@@ -86,6 +84,7 @@ impl ToClip {
             let (to, from) = (pose.translation.bits(), camera.translation.bits());
             core::array::from_fn(|i| i64::from(to[i]) - i64::from(from[i]))
         };
+        let scale = pose.scale.map(|scale| i64::from(scale.to_bits()));
         // 28 fraction bits (4.0 at most) times 22 are 50; 14 times 16 are 30.
         let mut matrix = [[0i64; 3]; 3];
         let mut translation = [0i64; 3];
@@ -93,7 +92,7 @@ impl ToClip {
             let axis = axis(row).map(|component| component * sign);
             matrix[row] = core::array::from_fn(|column| {
                 let sum = dot(axis, pose.rotation.map(|r| i64::from(r[column].to_bits())));
-                sum.clamp(-1 << 30, 1 << 30) * i64::from(pose.scale.to_bits())
+                sum.clamp(-1 << 30, 1 << 30) * scale[column]
             });
             translation[row] = dot(axis, distance);
         }
@@ -126,7 +125,7 @@ impl ToClip {
             });
             Row::new(elements, times_focal(to_i32(translation[row], 30 - unit_bits)))
         });
-        Self { rows, unit_bits, scale: pose.scale.to_bits() }
+        Self { rows, unit_bits }
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.
@@ -134,11 +133,33 @@ impl ToClip {
         self.unit_bits
     }
 
-    /// The bounds' centre (x, y and w), and the radius in clip units, rounded up by more than a rotation's elements are
-    /// rounded.
-    pub(super) fn bounds(&self, bounds: &Bounds) -> ([i32; 3], i64) {
-        let radius = (i64::from(bounds.radius) * i64::from(self.scale)) >> (34 - self.unit_bits);
-        (self.place_all(bounds.center), radius + (radius >> 10) + 4)
+    /// Whether a sphere of the mesh, whose centre lies `outside` of a plane, reaches over it, give or take four clip units for
+    /// rounding. Outside is what a coordinate · 2^`log2` − w · `slope` says, in either direction. A `log2` of 0 … 17, a slope
+    /// within ±2¹⁶.
+    ///
+    /// Whatever becomes of the sphere, it reaches as far as its radius times the gradient of what measures that distance. This
+    /// is the gradient of the elements themselves: so it is right for every matrix, one that stretches, shears or mirrors, too.
+    #[inline(never)]
+    pub(super) fn reaches(&self, outside: i64, radius: u32, (axis, log2, slope): (usize, i32, i32)) -> bool {
+        if outside <= 0 {
+            return true;
+        }
+        // The elements' upper halves: below 2¹³ · 2¹⁷ + 2¹⁶ · 2¹³.
+        let ([.., w], across) = (&self.rows, &self.rows[axis]);
+        let gradient: [u32; 3] = core::array::from_fn(|i| {
+            (((across.elements[i] >> 16) << log2) - (w.elements[i] >> 16) * slope).unsigned_abs()
+        });
+        // Each half is within ½ of its element, all three within √¾.
+        let unit = (1 << log2) + slope.unsigned_abs();
+        let outside = outside - i64::from(radius + 4) * i64::from(unit);
+        // All over a power of two so that 14 bits of the gradient are left, and then outside ≤ radius · gradient, squared.
+        let all = gradient.iter().fold(0, |all, side| all | side);
+        let shift = 18_u32.saturating_sub(all.leading_zeros());
+        let squares: u32 = gradient.iter().map(|side| (side >> shift) + 1).map(|side| side * side).sum();
+        let Ok(outside) = u32::try_from((outside >> shift).max(0)) else {
+            return false; // Below 2¹⁶ · 2¹⁵ it would have to be.
+        };
+        u64::from(outside) * u64::from(outside) <= u64::from(radius * radius) * u64::from(squares)
     }
 
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.

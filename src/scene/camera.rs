@@ -125,6 +125,9 @@ impl Camera {
 
     /// The same, standing and turned as `pose` says; the pose of an object that the camera is
     /// mounted on. Its scale is not used.
+    ///
+    /// A [mirrored](Pose::is_mirrored) pose shows the mirror image, a rear-view mirror's, of which fronts are seen as before. Of a
+    /// matrix that is neither a rotation nor mirrors one the rows are what it is, not the inverse.
     #[must_use]
     pub const fn pose(mut self, pose: Pose) -> Self {
         self.pose = pose;
@@ -245,7 +248,11 @@ impl Camera {
     ///
     /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px; before rounding it is
     /// off by at most 1/1024 px, and nearer than ¼ of a world unit by ¼/w of that as much. That holds for scales of 10⁻³ to
-    /// 10³ and at any distance from the world's origin.
+    /// 10³ and at any distance from the world's origin. Where the scales of the mesh's axes differ, all vertices are placed as exactly
+    /// as if all axes had the largest.
+    ///
+    /// `pose` may stretch, shear and [mirror](Pose::is_mirrored) the mesh. Fronts stay fronts, and light falls on the
+    /// surface as it lies in the world: see [`Pose`].
     ///
     /// Whatever the numbers, it draws or leaves out, and never fails but for want of room in a list: coordinates at the ends of
     /// every format, vertices that coincide, scale 0, rotations that are none, everything behind the eye, a vertex in the eye, a

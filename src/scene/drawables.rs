@@ -183,9 +183,12 @@ impl<'a> PerspectiveImage<'a> {
 
     /// A texture in a pose before a camera.
     ///
-    /// `size` is width and height in the units of the pose, whose scale multiplies them (0 … 15.99, saturated; steps of
+    /// `size` is width and height in the units of the pose, whose scales along x and y multiply them (0 … 15.99, saturated; steps of
     /// 1/2048). The picture stands around the pose's origin; unturned it faces +z, where the camera is, with its top
-    /// towards +y. Whatever the numbers, it draws or leaves out, as [`Camera::draw`] does: what crosses the near plane or
+    /// towards +y. In a [mirrored](Pose::is_mirrored) pose it is the picture in a mirror: the front faces where the pose turns +z, and
+    /// what is written on either side is seen the wrong way round.
+    ///
+    /// Whatever the numbers, it draws or leaves out, as [`Camera::draw`] does: what crosses the near plane or
     /// leaves the guard band is clipped, and nothing is drawn outside the camera's picture.
     #[must_use]
     pub fn posed(texture: &Texture<'a>, camera: &Camera, pose: &Pose, size: [I16F16; 2]) -> Self {

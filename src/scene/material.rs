@@ -154,7 +154,7 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         self.texture_scale.into()
     }
 
-    fn coloring(&self, pose: &Pose) -> Coloring {
+    fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
         let Some(lights) = self.lights else {
             return Coloring::default();
         };

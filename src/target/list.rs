@@ -262,7 +262,7 @@ where
         shader: &'a S,
         stats: &mut impl Count,
     ) -> Result<(), CapacityError> {
-        let style = Style::new::<F, S>(shader, pose);
+        let style = Style::new::<F, S>(shader, camera.placement(), pose);
         let [vertices, triangles, draws] = self.lengths();
         let recorded = record(
             &mut self.vertices,

@@ -1,7 +1,7 @@
 //! Random scenes of several meshes, poses, cameras and materials.
 
 use fixel::embedded_graphics::prelude::*;
-use fixel::fixed::types::I16F16;
+use fixel::fixed::types::{I2F14, I16F16, U10F22};
 use fixel::shapes::{self, Shape};
 use fixel::{
     Camera, Cull, DisplayList, Light, Lights, Material, Mesh, PixelFormat, Pose, Quality, Texture, Turn,
@@ -100,12 +100,21 @@ impl Draw {
 /// Somewhere before or around the eye.
 pub(crate) fn draw() -> impl Strategy<Value = Draw> {
     let turns = any::<[u16; 3]>();
+    // Some are mirrored, some stretched.
+    let scale = || prop_oneof![2 => Just(U10F22::ONE), 1 => (0.3..2.0_f64).prop_map(U10F22::from_num)];
+    let scales = prop_oneof![2 => Just([U10F22::ONE; 3]).boxed(), 1 => [scale(), scale(), scale()].boxed()];
+    let shape = (scales, prop::option::weighted(0.2, 0..3_usize));
     let place = ([-30..30_i16, -20..20_i16], -60..-5_i16);
-    (0..4_usize, 0..MATERIALS, turns, place, prop_oneof![4 => Just(false), 1 => Just(true)], 0..5_u8)
-        .prop_map(|(mesh, material, [x, y, z], ([right, up], away), inset, kind)| {
+    let kind = (prop_oneof![4 => Just(false), 1 => Just(true)], 0..5_u8);
+    (0..4_usize, 0..MATERIALS, turns, place, shape, kind).prop_map(
+        |(mesh, material, [x, y, z], ([right, up], away), (scales, mirror), (inset, kind))| {
             let at = |tenths: i16| I16F16::from_num(tenths) / 10;
             let turn = Turn::from_raw;
-            let turned = Pose::IDENTITY.rotated_x(turn(x)).rotated_y(turn(y)).rotated_z(turn(z));
+            let mut turned = Pose::IDENTITY.stretched(scales);
+            if let Some(axis) = mirror {
+                turned.rotation[axis][axis] = -I2F14::ONE;
+            }
+            let turned = turned.rotated_x(turn(x)).rotated_y(turn(y)).rotated_z(turn(z));
             // The ground stays level, and is larger.
             let turned = if mesh == 3 { Pose::IDENTITY.rotated_y(turn(y)).scaled_lit(8.0) } else { turned };
             let place = if mesh == 3 {
@@ -114,7 +123,8 @@ pub(crate) fn draw() -> impl Strategy<Value = Draw> {
                 Vec3::new(at(right), at(up), at(away))
             };
             Draw { mesh, material, pose: turned.at(place), inset, orthographic: kind == 0 && mesh != 3 }
-        })
+        },
+    )
 }
 
 /// Some draws.

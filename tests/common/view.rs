@@ -10,7 +10,7 @@ use crate::reference::view::{Lens, Placement, View};
 pub(crate) fn placement(pose: &Pose) -> Placement {
     Placement {
         rotation: pose.rotation.map(|row| row.map(|element| f64::from(element.to_bits()) / 16384.0)),
-        scale: f64::from(pose.scale.to_bits()) / 4_194_304.0,
+        scale: pose.scale.map(|scale| f64::from(scale.to_bits()) / 4_194_304.0),
         translation: [pose.translation.x, pose.translation.y, pose.translation.z].map(number),
     }
 }

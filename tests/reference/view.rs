@@ -4,13 +4,37 @@
 //! determinants, whether the triangle's corners are before the eye or not: no division by w, no clipping, nothing is
 //! rounded. Clipping comes in only to tell where the triangle's picture ends.
 
-/// Where something stands: turned, scaled, moved, in this order.
+/// Where something stands: scaled along each of its axes, turned, moved, in this order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     /// Rows.
     pub(crate) rotation: [[f64; 3]; 3],
-    pub(crate) scale: f64,
+    pub(crate) scale: [f64; 3],
     pub(crate) translation: [f64; 3],
+}
+
+impl Placement {
+    /// Where a vector of the mesh points, its length included.
+    fn vector(&self, vector: [f64; 3]) -> [f64; 3] {
+        let scaled = [0, 1, 2].map(|i| vector[i] * self.scale[i]);
+        self.rotation.map(|row| dot(row, scaled))
+    }
+
+    /// Where a point of the mesh is.
+    pub(crate) fn point(&self, point: [f64; 3]) -> [f64; 3] {
+        let turned = self.vector(point);
+        [0, 1, 2].map(|i| turned[i] + self.translation[i])
+    }
+
+    /// A vector at right angles to a triangle of the mesh where it stands, on the side that is outside: from which its corners
+    /// run counter-clockwise, or, where they stand in a mirror image, clockwise.
+    pub(crate) fn outwards(&self, corners: [[f64; 3]; 3]) -> [f64; 3] {
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| self.vector(axis));
+        let hand = dot(axes[0], cross(axes[1], axes[2])).signum();
+        let [a, b, c] = corners.map(|corner| self.vector(corner));
+        let edge = |to: [f64; 3]| [0, 1, 2].map(|i| to[i] - a[i]);
+        cross(edge(b), edge(c)).map(|component| component * hand)
+    }
 }
 
 /// How the camera draws.
@@ -40,6 +64,10 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// A point on its way to the screen: divided by the third, the first two are pixels. The last is its distance w.
 type Homogeneous = [f64; 4];
 
@@ -50,7 +78,7 @@ impl View {
             let sign = if axis == 2 { -1.0 } else { 1.0 };
             camera.rotation.map(|row| sign * row[axis])
         });
-        let column = |i: usize| pose.rotation.map(|row| row[i] * pose.scale);
+        let column = |i: usize| pose.rotation.map(|row| row[i] * pose.scale[i]);
         let moved = [0, 1, 2].map(|i| pose.translation[i] - camera.translation[i]);
         Self {
             lens,
@@ -62,6 +90,13 @@ impl View {
     /// Right, up, and distance w before the eye.
     pub(crate) fn eye(&self, point: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|i| dot(self.matrix[i], point) + self.offset[i])
+    }
+
+    /// Above 0, or below where what is seen is a mirror image: the determinant of what takes the mesh before the eye.
+    pub(crate) fn handedness(&self) -> f64 {
+        let [right, up, [x, y, z]] = self.matrix;
+        // Right, up and backwards are right-handed.
+        dot(right, cross(up, [-x, -y, -z]))
     }
 
     fn homogeneous(&self, point: [f64; 3]) -> Homogeneous {
@@ -87,7 +122,7 @@ impl View {
         let corners = corners.map(|corner| self.homogeneous(corner));
         let [a, b, c] = corners.map(|[x, y, divisor, _]| [x, y, divisor]);
         // Seen from the eye; y goes down.
-        let turn = dot(a, [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]]);
+        let turn = dot(a, cross(b, c));
         Facet { corners, turn, outline: self.outline(&corners) }
     }
 

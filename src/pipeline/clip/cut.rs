@@ -26,7 +26,7 @@ impl<'a> Polygon<'a> {
     #[inline(never)]
     fn new(
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         corners: [&Vertex; 3],
         vertices: &'a mut [ScreenVertex; MOST_CORNERS],
     ) -> Self {
@@ -101,7 +101,7 @@ impl Clip {
     pub(in crate::pipeline) fn cut(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring,
+        coloring: &Coloring<'_>,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
     ) -> Option<usize> {
@@ -205,7 +205,7 @@ impl Clip {
 }
 
 #[inline(never)]
-fn in_clip_space(to_clip: &ToClip, coloring: &Coloring, vertex: &Vertex) -> ClipVertex {
+fn in_clip_space(to_clip: &ToClip, coloring: &Coloring<'_>, vertex: &Vertex) -> ClipVertex {
     let mut color = [U8F8::ZERO; 3];
     coloring.of_vertex(vertex, &mut color);
     let [u, v] = vertex.uv.map(I16F16::from);

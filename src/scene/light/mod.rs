@@ -3,16 +3,20 @@
 //! Lambert's law: each light adds its colour times the cosine n·l between the surface's normal and the
 //! direction to the light. The cosine is taken in mesh space: the lights are brought there once a draw, so that no
 //! normal is ever turned.
+//!
+//! That is right as long as the pose keeps angles. A pose that stretches or shears the mesh turns normals otherwise than the
+//! surface: there each normal and place that is lit is brought to where it stands ([`stretch`]).
 
 mod normal;
+mod stretch;
 
 use crate::math::recip::Reciprocal;
-use crate::math::{Pose, Vec3, normalized};
-use crate::num::{I4F12, I16F16, U8F8, wide};
+use crate::math::{Pose, Vec3, dot, normalized};
+use crate::num::{I2F14, I4F12, I16F16, U8F8, wide};
 use crate::scene::Vertex;
 use core::{array, fmt, num::NonZeroU16};
-use heapless::Vec;
-use normal::{Direction, magnitude64};
+use normal::{Direction, across_face, magnitude64};
+use stretch::Stretch;
 
 pub use normal::Normal;
 
@@ -123,20 +127,30 @@ impl<'a> Lights<'a> {
     /// A directional light costs 9 products, a point light 27 of 64 bits, and no divide.
     #[must_use]
     #[inline(never)]
-    pub fn in_mesh_space(&self, pose: &Pose) -> Lighting {
-        let mut lighting = Lighting { lights: Vec::new(), ambient: self.ambient };
+    pub fn in_mesh_space<'p>(&self, pose: &'p Pose) -> Lighting<'p> {
+        let ambient = self.ambient;
+        let mut lighting =
+            Lighting { lights: [Local::NONE; MAX], count: 0, ambient, stretch: Stretch::of(pose) };
+        let (axes, unit) = match &lighting.stretch {
+            None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
+            Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
+        };
         for &Light { source, color } in self.lights {
             let light = match source {
                 Source::Directional(towards) => {
-                    Local::Directional { towards: turned_back(pose, towards), color }
+                    Local::Directional { towards: turned_back(axes, towards), color }
                 }
                 Source::Point { position, range } if range > 0 => {
-                    Local::Point(LocalPoint::new(pose, position, range, color))
+                    let place = position_in_axes(axes, pose.translation, position);
+                    Local::Point(LocalPoint::new(place, unit, range, color))
                 }
                 Source::Point { .. } => continue,
             };
             // There is room: `try_new` counted.
-            let _ = lighting.lights.push(light);
+            if let Some(place) = lighting.lights.get_mut(usize::from(lighting.count)) {
+                *place = light;
+                lighting.count += 1;
+            }
         }
         lighting
     }
@@ -157,14 +171,18 @@ impl fmt::Display for LightsError {
 
 impl core::error::Error for LightsError {}
 
-/// [`Lights`] as they stand around one mesh.
+/// [`Lights`] as they stand around one mesh, in its pose.
 #[derive(Clone, Debug)]
-pub struct Lighting {
-    lights: Vec<Local, MAX, u8>,
+pub struct Lighting<'p> {
+    lights: [Local; MAX],
+    /// How many of them there are.
+    count: u8,
     ambient: [u8; 3],
+    /// If the pose does not keep angles.
+    stretch: Option<Stretch<'p>>,
 }
 
-const _: () = assert!(size_of::<Lighting>() == 88);
+const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 2 * size_of::<usize>());
 
 #[derive(Clone, Copy, Debug)]
 enum Local {
@@ -177,19 +195,40 @@ enum Local {
     Point(LocalPoint),
 }
 
-impl Lighting {
+impl Local {
+    const NONE: Self = Self::Directional { towards: [0; 3], color: [0; 3] };
+}
+
+impl Lighting<'_> {
     /// The light that arrives at a place that faces the direction of `normal`: ambient + Σ max(0, n·l) ·
     /// colour · attenuation, limited to 255.0; `two_sided`: |n·l|.
     ///
-    /// `normal` is taken as it is: one that is too short gives less light. Within ¼ (of 255) of exact from the
-    /// quantised normal, pose and lights, if the pose's rotation is one and no point light is nearer than
-    /// 1/1000 of a mesh unit and 2⁻¹⁴ of a unit of the world; whatever the numbers, within 0 … 255. A
-    /// directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
-    /// point light 20 and a reciprocal square root (400), less if it does not reach.
+    /// `normal` is one of the mesh; where the pose stretches the mesh, the light is that on the stretched surface. It is taken as it
+    /// is: one that is too short gives less light.
+    ///
+    /// Within ¼ (of 255) of exact from the quantised normal, pose and lights, if the pose's matrix is a rotation or mirrors one, or
+    /// at least stretches no direction more than 8 times as much as another (the scales do not count), and no point light is
+    /// nearer than 1/1000 of a mesh unit (the longest, if scales differ) and 2⁻¹⁴ of a unit of the world. A rotation worn by
+    /// many turns, but not yet by so much that its normals are treated as stretched: within 1. Whatever the numbers,
+    /// within 0 … 255.
+    ///
+    /// A directional light costs 6 short products (about 170 cycles on a Cortex-M0+, at a vertex that has no other 100), a
+    /// point light 20 and a reciprocal square root (400), less if it does not reach. Where the pose does not keep angles, a vertex with
+    /// one directional light takes 800 more.
     #[must_use]
     pub fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
+        let normal = match &self.stretch {
+            None => normal,
+            Some(stretch) => stretch.normal(normal),
+        };
+        self.arriving(position, normal, two_sided)
+    }
+
+    /// As [`Lighting::at`], with a normal along the axes that the lights are in.
+    #[inline(never)]
+    fn arriving(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
-        for light in &self.lights {
+        for light in self.lights() {
             let (cosine, color) = match light {
                 Local::Directional { towards, color } => {
                     let cosine = facing(normal.dot(towards.map(i32::from)), two_sided);
@@ -197,7 +236,9 @@ impl Lighting {
                     // 127/128: 16513 to 16384.
                     (cosine - (cosine >> 7), color)
                 }
-                Local::Point(light) => (light.at(position, normal, two_sided), &light.color),
+                Local::Point(light) => {
+                    (light.at(self.stretch.as_ref(), position, normal, two_sided), &light.color)
+                }
             };
             for (sum, &channel) in sum.iter_mut().zip(color) {
                 // Four times 3.1 · 255 at most, for numbers that are no unit vectors.
@@ -211,7 +252,9 @@ impl Lighting {
     #[inline(always)]
     pub(crate) fn at_vertex(&self, vertex: &Vertex, two_sided: bool, to: &mut [U8F8; 3]) {
         // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
-        if let [Local::Directional { towards, color }] = self.lights.as_slice() {
+        if let Self { count: 1, lights: [Local::Directional { towards, color }, ..], stretch: None, .. } =
+            self
+        {
             let [x, y, z] = vertex.normal.map(i32::from);
             let [to_x, to_y, to_z] = towards.map(i32::from);
             // 127 · 16513 is 16384 in 14 fraction bits.
@@ -225,7 +268,7 @@ impl Lighting {
     }
 
     /// The light that arrives in the middle of a face, for flat shading: [`Lighting::at`] with
-    /// [`Normal::of_face`].
+    /// [`Normal::of_face`], or, where the pose stretches it, with the normal of the stretched face, as exactly.
     #[must_use]
     pub fn at_face(&self, corners: [[I4F12; 3]; 3], two_sided: bool) -> [U8F8; 3] {
         let middle = array::from_fn(|i| {
@@ -233,7 +276,17 @@ impl Lighting {
             // A third less 2·10⁻⁵ of it; below 2³¹.
             I4F12::from_bits(((sum * 21845) >> 16) as i16)
         });
-        self.at(middle, Normal::of_face(corners), two_sided)
+        let across = across_face(corners);
+        let normal = match &self.stretch {
+            None => Normal::along(across),
+            Some(stretch) => stretch.face_normal(across),
+        };
+        self.arriving(middle, normal, two_sided)
+    }
+
+    #[inline(always)]
+    fn lights(&self) -> &[Local] {
+        self.lights.get(..usize::from(self.count)).unwrap_or_default()
     }
 }
 
@@ -251,45 +304,42 @@ fn facing(cosine: i32, two_sided: bool) -> u32 {
 
 /// 128/127 of a direction of the world in mesh space, 30 fraction bits to 14: the rotation's inverse is its transpose.
 #[inline(never)]
-fn turned_back(pose: &Pose, direction: [i32; 3]) -> [i16; 3] {
+fn turned_back(rotation: &[[I2F14; 3]; 3], direction: [i32; 3]) -> [i16; 3] {
     array::from_fn(|column| {
-        let sum: i64 =
-            (0..3).map(|row| wide(pose.rotation[row][column].to_bits().into(), direction[row])).sum();
+        let sum = dot(rotation.map(|row| row[column].to_bits().into()), direction);
         // 15 bits; beyond ±1 only if the rotation is none.
         let component = ((sum + (1 << 28)) >> 29).clamp(-1 << 15, 1 << 15) as i32;
         ((component * 16513 + (1 << 14)) >> 15) as i16
     })
 }
 
-/// A point light in mesh space.
+/// A point light in mesh space, or around a stretched mesh in the axes of the world.
 #[derive(Clone, Copy, Debug)]
 struct LocalPoint {
     /// In units of 2^−`unit_bits`, within ±2²⁹.
     position: [i32; 3],
     /// −14 … 26: as fine as the light's distance from the mesh's origin allows.
     unit_bits: i8,
-    /// (scale / range)² is `inverse` · 2^(2 · `unit_bits` − 32 − `shift`), 2¹⁵ … 2¹⁶ − 1.
+    /// (Unit / range)² is `inverse` · 2^(2 · `unit_bits` − 32 − `shift`), 2¹⁵ … 2¹⁶ − 1.
     inverse: NonZeroU16,
     shift: i16,
     color: [u8; 3],
 }
 
 impl LocalPoint {
+    /// At a place in units of the world (27 fraction bits, below 2⁴⁷); its own unit is `scale` (22 fraction bits, not 0) times
+    /// 2^`log2` of these (−19 … 12).
     #[inline(never)]
-    fn new(pose: &Pose, position: Vec3, range: I16F16, color: [u8; 3]) -> Self {
-        let scale = pose.scale.to_bits().max(1);
+    fn new(from_origin: [i64; 3], (scale, log2): (u32, i32), range: I16F16, color: [u8; 3]) -> Self {
         let range = range.to_bits().unsigned_abs();
-
-        // World units, turned to the axes of the mesh, 27 fraction bits, below 2⁴⁷.
-        let from_origin = position_in_axes(pose, position);
-        // Of 29 bits, over the scale: position = numerator · 2^(excess − 27) · 2²² / scale.
+        // Of 29 bits, over the unit: position = numerator · 2^(excess − 27) · 2²² / scale / 2^log2.
         let excess = 64 - magnitude64(from_origin).leading_zeros() as i32 - 29;
         let numerator = from_origin
             .map(|component| (if excess >= 0 { component >> excess } else { component << -excess }) as i32);
         // `precise` takes 31 bits.
         let halved = scale >> 31;
         let Reciprocal { mantissa, zeros } = Reciprocal::precise(scale >> halved);
-        let exponent = 36 - excess - zeros as i32 + halved as i32;
+        let exponent = 36 - excess - zeros as i32 + halved as i32 + log2;
         let unit_bits = exponent.min(26);
         let position = numerator
             .map(|component| (wide(component, mantissa) >> 31) as i32 >> (exponent - unit_bits).min(31));
@@ -302,21 +352,29 @@ impl LocalPoint {
         let square_zeros = square.leading_zeros();
         // Its first bit is set anyway; the type's unused 0 saves room.
         let inverse = NonZeroU16::MIN | ((square << square_zeros) >> 16) as u16;
-        let inverse_exponent = 2 * (zeros as i32 - scale_zeros as i32) - 25 - square_zeros as i32;
+        let inverse_exponent = 2 * (zeros as i32 - scale_zeros as i32 + log2) - 25 - square_zeros as i32;
         let shift = 2 * unit_bits - 32 - inverse_exponent;
 
-        // −14 … 26; −96 … 110.
+        // −14 … 26; −110 … 148.
         Self { position, unit_bits: unit_bits as i8, inverse, shift: shift as i16, color }
     }
 
     /// The cosine that counts times the attenuation, 14 fraction bits.
     #[inline(never)]
-    fn at(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> u32 {
-        let finer = i32::from(self.unit_bits) - 12;
-        let offset: [i32; 3] = array::from_fn(|i| {
-            let from = i32::from(position[i].to_bits());
-            self.position[i] - if finer >= 0 { from << finer } else { from >> -finer }
-        });
+    fn at(
+        &self,
+        stretch: Option<&Stretch<'_>>,
+        position: [I4F12; 3],
+        normal: Normal,
+        two_sided: bool,
+    ) -> u32 {
+        // 26 fraction bits, within ±2²⁹·⁶.
+        let place = match stretch {
+            None => position.map(|at| i32::from(at.to_bits()) << 14),
+            Some(stretch) => stretch.place(position),
+        };
+        let coarser = (26 - i32::from(self.unit_bits)).min(31);
+        let offset: [i32; 3] = array::from_fn(|i| self.position[i] - (place[i] >> coarser));
         let Some(direction) = Direction::of(offset) else { return 0 };
         let cosine = facing(normal.dot(direction.vector), two_sided);
 
@@ -337,18 +395,18 @@ impl LocalPoint {
     }
 }
 
-/// Where a place in the world is as seen from the mesh's origin along its axes, but in units of the world; 27
+/// Where a place in the world is as seen from the mesh's origin along axes, but in units of the world; 27
 /// fraction bits, below 2⁴⁷.
 ///
 /// The transpose of a rotation of 14 fraction bits is its inverse only to 2⁻¹³, which would show on a
 /// surface close to the light. One step of refinement, x += Rᵀ(p − R·x), squares that.
 #[inline(never)]
-fn position_in_axes(pose: &Pose, position: Vec3) -> [i64; 3] {
-    let rotation = |row: usize, column: usize| i64::from(pose.rotation[row][column].to_bits());
+fn position_in_axes(axes: &[[I2F14; 3]; 3], origin: Vec3, position: Vec3) -> [i64; 3] {
+    let rotation = |row: usize, column: usize| i64::from(axes[row][column].to_bits());
     let turned_back = |v: [i64; 3], column: usize| {
         rotation(0, column) * v[0] + rotation(1, column) * v[1] + rotation(2, column) * v[2]
     };
-    let (to, from) = (position.bits(), pose.translation.bits());
+    let (to, from) = (position.bits(), origin.bits());
     let offset: [i64; 3] = array::from_fn(|i| i64::from(to[i]) - i64::from(from[i])); // below 2³²
     // 30 fraction bits to 27: below 2⁴⁵·⁶.
     let estimate: [i64; 3] = array::from_fn(|i| turned_back(offset, i) >> 3);

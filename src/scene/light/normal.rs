@@ -13,26 +13,33 @@ impl Normal {
     /// Within 2⁻¹³ of exact however small or thin the face; 0 if the corners lie on one line. Costs 9 short
     /// products, a reciprocal square root, and 6 long products more if an edge is 8 units or longer.
     #[must_use]
-    pub fn of_face([a, b, c]: [[I4F12; 3]; 3]) -> Self {
-        let edge = |to: [I4F12; 3]| -> [i32; 3] {
-            array::from_fn(|i| i32::from(to[i].to_bits()) - i32::from(a[i].to_bits()))
-        };
-        let (p, q) = (edge(b), edge(c));
-        let cross = if (magnitude(p) | magnitude(q)) < 1 << 15 {
-            // Below 2³¹.
-            array::from_fn(|i| {
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                p[j] * q[k] - p[k] * q[j]
-            })
-        } else {
-            long_cross(p, q)
-        };
-        let Some(direction) = Direction::of(cross) else { return Self([0; 3]) };
+    pub fn of_face(corners: [[I4F12; 3]; 3]) -> Self {
+        Self::along(across_face(corners))
+    }
+
+    /// Of length 1, as a vector; 0 for 0.
+    #[inline(never)]
+    pub(super) fn along(vector: [i32; 3]) -> Self {
+        let Some(direction) = Direction::of(vector) else { return Self([0; 3]) };
         let (inverse, shift) = direction.inverse_length();
         Self(direction.vector.map(|component| {
             let product = component * inverse as i32; // 2³⁰ at most
             (((product >> shift) + 1) >> 1) as i16
         }))
+    }
+
+    /// The same direction, as long as this times another.
+    pub(super) fn times_length_of(self, other: Self) -> Self {
+        let Some(direction) = Direction::of(other.0.map(i32::from)) else { return Self([0; 3]) };
+        let (inverse, shift) = direction.inverse_length();
+        // |v|² / |v|: 17 by 15 bits, below 2³². Components of 14 bits and a sign are 15 bits after at most 15 shifts to the left.
+        let length = (((direction.squares >> 15) * inverse) >> shift) as i32;
+        let length = length >> (-direction.exponent).clamp(0, 31);
+        Self(self.0.map(|component| ((i32::from(component) * length + (1 << 13)) >> 14) as i16))
+    }
+
+    pub(super) fn bits(self) -> [i32; 3] {
+        self.0.map(i32::from)
     }
 
     /// The components.
@@ -90,7 +97,7 @@ impl Direction {
     ///
     /// A straight line and three steps of Newton's y·(3 − m·y²)/2, whose errors are 0.13, 0.026, 0.001,
     /// 2·10⁻⁶: on Armv6-M a tenth of what an integer square root and a reciprocal cost.
-    #[inline]
+    #[inline(never)]
     pub(super) fn inverse_length(&self) -> (u32, u32) {
         // m = 1 … 4 in 14 fraction bits.
         let (m, shift) =
@@ -103,6 +110,25 @@ impl Direction {
             y = (y * ((3 << 15) - product) + (1 << 15)) >> 16;
         }
         (y.min(1 << 15), shift)
+    }
+}
+
+/// Across a face, from the side from which its corners run counter-clockwise: exact, or of 30 bits where an edge is 8 units or
+/// longer.
+#[inline(never)]
+pub(super) fn across_face([a, b, c]: [[I4F12; 3]; 3]) -> [i32; 3] {
+    let edge = |to: [I4F12; 3]| -> [i32; 3] {
+        array::from_fn(|i| i32::from(to[i].to_bits()) - i32::from(a[i].to_bits()))
+    };
+    let (p, q) = (edge(b), edge(c));
+    if (magnitude(p) | magnitude(q)) < 1 << 15 {
+        // Below 2³¹.
+        array::from_fn(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            p[j] * q[k] - p[k] * q[j]
+        })
+    } else {
+        long_cross(p, q)
     }
 }
 
@@ -119,7 +145,7 @@ fn long_cross(p: [i32; 3], q: [i32; 3]) -> [i32; 3] {
 
 /// As many bits as the largest magnitude has.
 #[inline]
-fn magnitude(vector: [i32; 3]) -> u32 {
+pub(super) fn magnitude(vector: [i32; 3]) -> u32 {
     vector.iter().fold(0, |all, component| all | component.unsigned_abs())
 }
 
