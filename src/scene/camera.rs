@@ -136,22 +136,33 @@ impl Camera {
 
     /// The same, turned to look at `target`, with `up` upwards on the screen.
     ///
-    /// Where that says nothing (`target` is where the camera stands, or `up` points along the
-    /// line of sight) the turn stays as it was.
+    /// The target is in the middle of the picture from everywhere. Only what is upwards may be left open: where `up` is 0 or points
+    /// along the line of sight, there or back, within two millionths of a radian. Then +y of the world is upwards. Where that
+    /// lies along the line of sight too, −z is upwards if the camera looks down, and +z if it looks up, as after a level flight
+    /// towards −z ([`Camera::heading`] with a yaw of 0).
+    ///
+    /// Where the camera stands in its target, it stays turned as it was.
     #[must_use]
     pub const fn look_at(mut self, target: Vec3, up: Vec3) -> Self {
         let (from, to, up) = (self.pose.translation.bits(), target.bits(), up.bits());
-        let back = normalized(difference(from, to));
-        let up = normalized([up[0] as i64, up[1] as i64, up[2] as i64]);
-        if let (Some(back), Some(up)) = (back, up)
-            && let Some(right) = normalized(cross(up, back))
-            && let Some(up) = normalized(cross(back, right))
-        {
-            let mut i = 0;
-            while i < 3 {
-                self.pose.rotation[i] = [unit14(right[i]), unit14(up[i]), unit14(back[i])];
-                i += 1;
+        let Some(back) = normalized(difference(from, to)) else {
+            return self;
+        };
+        let ahead = if back[1] > 0 { -UNIT } else { UNIT };
+        let choices = [up, [0, UNIT, 0], [0, 0, ahead]];
+        let mut choice = 0;
+        while choice < choices.len() {
+            if let Some(right) = to_the_right(choices[choice], back)
+                && let Some(up) = normalized(cross(back, right))
+            {
+                let mut i = 0;
+                while i < 3 {
+                    self.pose.rotation[i] = [unit14(right[i]), unit14(up[i]), unit14(back[i])];
+                    i += 1;
+                }
+                return self;
             }
+            choice += 1;
         }
         self
     }
@@ -303,12 +314,32 @@ const fn cross(a: [i32; 3], b: [i32; 3]) -> [i64; 3] {
     ]
 }
 
+/// 1.0 with 30 fraction bits.
+const UNIT: i32 = 1 << 30;
+
+/// At right angles to what is upwards, of any length, and to a unit vector backwards: a unit vector. `None` where these two lie in one
+/// line, or so nearly that their rounding would decide: within 2⁻²⁰ radians, about.
+///
+/// (At right angles to `back` it is exactly, before it is rounded: the product of what is rounded already is exact.)
+const fn to_the_right(up: [i32; 3], back: [i32; 3]) -> Option<[i32; 3]> {
+    let Some(up) = normalized([up[0] as i64, up[1] as i64, up[2] as i64]) else {
+        return None;
+    };
+    let [x, y, z] = cross(up, back); // 60 fraction bits
+    let least = 1 << 40;
+    if x.unsigned_abs() < least && y.unsigned_abs() < least && z.unsigned_abs() < least {
+        return None;
+    }
+    normalized([x, y, z])
+}
+
 /// A component of a unit vector, 30 fraction bits down to 14.
 const fn unit14(component: i32) -> I2F14 {
     I2F14::from_bits(((component + (1 << 15)) >> 16) as i16)
 }
 
 #[cfg(test)]
+#[expect(clippy::float_arithmetic, reason = "the f64 truth of the tests")]
 mod tests {
     use super::*;
 
@@ -329,6 +360,83 @@ mod tests {
         assert_eq!([r[0][0], r[1][0], r[2][0]], [I2F14::ZERO, I2F14::ZERO, -I2F14::ONE]);
         assert_eq!([r[0][1], r[1][1], r[2][1]], [I2F14::ZERO, I2F14::ONE, I2F14::ZERO]);
         assert_eq!([r[0][2], r[1][2], r[2][2]], [I2F14::ONE, I2F14::ZERO, I2F14::ZERO]);
+    }
+
+    /// How far, in 1/16 px, the middle of the screen is from where the camera shows a point.
+    fn off_the_middle(camera: &Camera, point: Vec3) -> Option<i32> {
+        let at = camera.project(point)?;
+        let [x, y] = camera.projection.center;
+        Some((i32::from(at.x.to_bits()) - x).abs().max((i32::from(at.y.to_bits()) - y).abs()))
+    }
+
+    #[test]
+    fn what_is_looked_at_from_straight_above_or_below_is_in_the_middle() {
+        let up = Vec3::lit(0.0, 1.0, 0.0);
+        for height in [30.0, -30.0] {
+            let target = Vec3::lit(100.0, 0.0, 100.0);
+            for yaw in [0, 77] {
+                let camera = Camera::perspective(Turn::from_degrees(60), SIZE)
+                    .heading(Turn::from_degrees(yaw), Turn::ZERO, Turn::ZERO)
+                    .at(Vec3::lit(100.0, height, 100.0))
+                    .look_at(target, up);
+                assert_eq!(off_the_middle(&camera, target), Some(0), "from {height}");
+                // As flown there from a level flight towards -z: what was before is up on the screen, from below it is down.
+                let pitch = Turn::from_degrees(if height > 0.0 { -90 } else { 90 });
+                assert_eq!(camera.pose.rotation, camera.heading(Turn::ZERO, pitch, Turn::ZERO).pose.rotation);
+            }
+        }
+    }
+
+    #[test]
+    fn along_any_up_the_y_axis_is_up() {
+        let camera = Camera::focal(80.0, SIZE).near(0.01);
+        for target in [[0.0, 0.0, -3.0], [5.0, 0.0, 0.0], [1.0, 2.0, 3.0], [-0.01, 0.0, 0.02]] {
+            let [x, y, z] = target;
+            let target = Vec3::lit(x, y, z);
+            let right = camera.look_at(target, Vec3::lit(0.0, 1.0, 0.0));
+            for up in [target, -target, Vec3::ZERO, target + target] {
+                assert_eq!(camera.look_at(target, up), right);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_looked_at_is_in_the_middle_with_any_up_in_20_000_cases() {
+        use proptest::prelude::*;
+        let bits =
+            || prop_oneof![any::<i32>(), -1000..1000i32, -2..=2i32, Just(0), (0..31u32).prop_map(|b| 1 << b)];
+        let vector = || [bits(), bits(), bits()].prop_map(|bits| bits.map(I16F16::from_bits));
+        let vector = || vector().prop_map(|[x, y, z]| Vec3::new(x, y, z));
+        let cases = (
+            vector(),
+            vector(),
+            prop_oneof![vector(), Just(Vec3::lit(0.0, 1.0, 0.0))],
+            any::<bool>(),
+            bits(),
+        );
+        let config = ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() };
+        proptest!(config, |((at, target, up, along, bits) in cases)| {
+            // An up that is almost along the line of sight, too.
+            let up = if along { target - at + Vec3::new(I16F16::ZERO, I16F16::ZERO, I16F16::from_bits(bits % 3)) } else { up };
+            let camera = Camera::focal(100.0, SIZE).near(0.0).at(at).look_at(target, up);
+            let away = difference(target.bits(), at.bits());
+            prop_assume!(away != [0; 3]);
+            // Seen by f64: the rotation's elements are rounded to 2⁻¹⁴.
+            let seen: [f64; 3] = core::array::from_fn(|axis| {
+                (0..3).map(|i| f64::from(camera.pose.rotation[i][axis].to_bits()) / 16384.0 * away[i] as f64).sum()
+            });
+            let length = away.iter().map(|&c| (c as f64).powi(2)).sum::<f64>().sqrt();
+            let most = length * 0.51 * 3f64.sqrt() / 16384.0;
+            prop_assert!(seen[0].abs() <= most && seen[1].abs() <= most && seen[2] < 0.0, "{:?} {:?}", seen, camera.pose);
+            // A rotation, and with `up` upwards or level.
+            let pose = camera.pose;
+            prop_assert!(pose.keeps_angles() && !pose.is_mirrored());
+            let towards: f64 = (0..3)
+                .map(|i| f64::from(pose.rotation[i][1].to_bits()) / 16384.0 * f64::from(up.bits()[i]))
+                .sum();
+            let long = up.bits().iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
+            prop_assert!(towards >= -long * 1e-4, "{} of {}: {:?}", towards, long, pose);
+        });
     }
 
     #[test]
