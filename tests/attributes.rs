@@ -370,3 +370,46 @@ fn quarter_pixel_holds_where_a_row_has_all_texels_20_000_cases() {
 fn exact_holds_where_a_row_has_all_texels_20_000_cases() {
     hold_where_rows_are_steep::<Exact>("Exact", 0.02);
 }
+
+/// Wide and high, of distances that change much from row to row and so little along a row that it may count as level, or not quite:
+/// by a 64th of a pixel's error to 16 pixels' along the tangent.
+fn nearly_level() -> impl Strategy<Value = Case> {
+    let sizes = (prop_oneof![3 => 8..=200_i32, 1 => 200..=1022_i32], 2..=8_i32);
+    let texels = || -(2000 << 16)..=2000_i32 << 16;
+    let falls = (-8.0..=6.0_f64, any::<bool>(), 0.5..4.0_f64);
+    (sizes, falls, [texels(), texels(), texels()], 0..=15_i32).prop_map(
+        |((width, height), (error, rises, ratio), texels, off)| {
+            // Over L pixels it is L² · q′/q in pixels.
+            let fall = error.exp2() / f64::from(width);
+            let nearest = if rises { 1.0 / (1.0 + fall) } else { 1.0 };
+            let corner = |x: i32, y: i32, share: f64, u: i32| {
+                let q = (share * nearest * (2_f64.powi(31) - 1.0)) as u32;
+                Corner { x, y, q, attributes: [u, -u, 0, 0, 0] }
+            };
+            let along = if rises { 1.0 + fall } else { (1.0 - fall).max(1e-4) };
+            let triangle = Triangle([
+                corner(off, 0, 1.0, texels[0]),
+                corner(16 * width + off, 0, along, texels[1]),
+                corner(off, 16 * height, 1.0 / ratio.exp2(), texels[2]),
+            ]);
+            Case {
+                strip: Strip::new(width as u32, height as u32, 0),
+                triangle,
+                inputs: Inputs::Uv,
+                hidden: 0,
+            }
+        },
+    )
+}
+
+#[test]
+fn quarter_pixel_holds_where_rows_are_nearly_level_3_000_cases() {
+    let total = RefCell::new(Worst::default());
+    for_all("nearly level rows", 3_000, nearly_level(), |case| {
+        let found = measure::<QuarterPixel>(&case, Promise::Within(0.25)).map_err(TestCaseError::fail)?;
+        total.borrow_mut().join(found);
+        Ok(())
+    });
+    let total = total.into_inner();
+    println!("nearly level rows: {total} over {} pixels", total.pixels);
+}

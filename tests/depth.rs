@@ -193,3 +193,66 @@ fn in_3_000_scenes_bands_of_1_2_7_and_16_rows_give_the_words_of_the_whole() {
         Ok(())
     });
 }
+
+/// A triangle of a mesh, all of it on a strip of at most 64 pixels, one in two less than two pixels thick. Its depth is all but the
+/// nearest, or the farthest, where rounding could take it out of its range; or changes by any amount, across a thin one too.
+fn small_triangle() -> impl Strategy<Value = (Strip, Triangle)> {
+    let places = (1..=64_u32, 1..=64_u32).prop_flat_map(|(width, height)| {
+        let place = move || (0..=16 * width as i32, 0..=16 * height as i32);
+        let thin = (place(), place(), 0.0..=1.0_f64, -30..=30_i32, -30..=30_i32).prop_map(
+            move |(a, b, along, dx, dy)| {
+                let between = |a: i32, b: i32| a + (f64::from(b - a) * along) as i32;
+                let x = (between(a.0, b.0) + dx).clamp(0, 16 * width as i32);
+                [a, b, (x, (between(a.1, b.1) + dy).clamp(0, 16 * height as i32))]
+            },
+        );
+        (Just(Strip::new(width, height, 0)), prop_oneof![[place(), place(), place()], thin])
+    });
+    let off =
+        |most: u32| (0..=most, any::<u32>()).prop_map(|(size, bits)| bits & ((1_u64 << size) - 1) as u32);
+    let q = prop_oneof![
+        [off(12), off(12), off(12)].prop_map(|off| off.map(|off| (1 << 31) - 1 - off)),
+        [off(12), off(12), off(12)].prop_map(|off| off.map(|off| (1 << 15) - 2048 + off)),
+        (20..31_u32, any::<u32>(), [off(31), off(31), off(31)]).prop_map(|(size, bits, off)| {
+            let most = 1 << size | bits & ((1 << size) - 1);
+            off.map(|off| most.saturating_sub(off).max(1))
+        }),
+    ];
+    (places, q).prop_map(|((strip, places), q)| {
+        let corner = |i: usize| {
+            let (x, y) = places[i];
+            reference::Corner { x, y, q: q[i], attributes: [0; ATTRIBUTES] }
+        };
+        (strip, Triangle([0, 1, 2].map(corner)))
+    })
+}
+
+#[test]
+fn depth_is_within_a_step_and_in_range_on_10_000_small_triangles() {
+    let pixels = Cell::new(0_u64);
+    for_all("depth of small triangles", 10_000, small_triangle(), |(strip, triangle)| {
+        let stored = draw::<Depth16>(strip, &[triangle]);
+        let asked = draw::<Counting>(strip, &[triangle]);
+        for ((x, y), (word, met)) in strip.pixels().zip(stored.depth.iter().zip(&asked.depth)) {
+            if !triangle.covers(x, y) {
+                prop_assert_eq!(*word, 0, "at {}, {}", x, y);
+                continue;
+            }
+            let exactly = triangle.at(x, y);
+            prop_assert!(
+                *word >= 1 && u32::from(*word) == (met.q >> 15).max(1) && exactly.depth_error(met.q) <= 1.0,
+                "at {}, {}: {} of q = {}, exactly {} of {}",
+                x,
+                y,
+                word,
+                met.q,
+                exactly.depth_word(),
+                exactly.q()
+            );
+            pixels.set(pixels.get() + 1);
+        }
+        Ok(())
+    });
+    println!("depth of small triangles: {} pixels", pixels.get());
+    assert!(pixels.get() > 20 * u64::from(cases(10_000)));
+}

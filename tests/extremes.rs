@@ -227,3 +227,35 @@ fn a_matrix_of_nothing_at_the_largest_scale_and_focal_length_draws_nothing() {
         assert!(pixels.iter().all(|word| *word == 0x1234) && depth.iter().all(|depth| *depth == 0));
     }
 }
+
+/// Planes at most as far apart as rounding, or the wrong way round, with a mesh that lies across both, and one that lies in the near
+/// plane.
+#[test]
+fn between_planes_that_coincide_or_are_the_wrong_way_round_there_is_nothing() {
+    let size = Size::new(40, 30);
+    let tilted = |z: f32| vertices(&[[-2.0, -2.0, z], [2.0, -2.0, z], [2.0, 2.0, -z], [-2.0, 2.0, -z]]);
+    let (mut cases, bit) = (0, 1.0 / 65536.0);
+    for camera in [Camera::focal(30.0, size), Camera::orthographic(9.0, size)] {
+        for near in [0.25, 0.3, 1.0, 1.000_015_3, 2.0, 3.141_6, 100.007, 3000.5] {
+            for far in [near, near - bit, near - 3.0 * bit, near / 2.0] {
+                for (scale, tilt) in
+                    [0.01, 0.3, 1.0, 7.0, 300.0].into_iter().flat_map(|s| [(s, 0.0), (s, 0.5)])
+                {
+                    let corners = tilted(tilt);
+                    let mesh =
+                        Mesh::try_new(&corners, &[[0, 1, 2], [0, 2, 3]]).expect("the indices are in range");
+                    let pose = Pose::IDENTITY.scaled_lit(scale).at(Vec3::lit(0.0, 0.0, -near));
+                    let (mut pixels, mut depth) = ([0x1234; 40 * 30], [0; 40 * 30]);
+                    let mut band =
+                        Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth).expect("large enough");
+                    let surface = Material::gouraud().cull(Cull::None);
+                    camera.near(near).far(far).draw(&mesh, &pose, &surface, &mut band);
+                    let drawn = pixels.iter().filter(|word| **word != 0x1234).count();
+                    assert_eq!(drawn, 0, "near {near}, far {far}, scale {scale}, tilt {tilt}");
+                    cases += 1;
+                }
+            }
+        }
+    }
+    println!("{cases} pairs of planes with nothing between them");
+}

@@ -293,4 +293,49 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn q_that_rounding_took_out_of_its_range_is_brought_back() {
+        let (least, most) = (5, i32::MAX as u32);
+        let met =
+            [(0, least), (u32::MAX, least), (u32::MAX - 2000, least), (1 << 31, most), (most + 2000, most)];
+        let inside = [least, 6, 1 << 20, most].map(|q| (q, q));
+        for (q, bounded) in met.into_iter().chain(inside) {
+            for zeros in 1..32 {
+                let (values, steps) = ([], []);
+                let mut walk =
+                    Walk::<0> { attributes: &[], q, q_step: 0, q_min: least, values, steps, zeros };
+                let mantissa = walk.normalised();
+                assert_eq!((mantissa >> walk.zeros, mantissa >> 31), (bounded, 1), "{q}, {zeros}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_longest_row_is_asked_whether_it_is_level_without_overflow() {
+        let walk = |q_step: i32| Walk::<0> {
+            attributes: &[],
+            q: if q_step < 0 { i32::MAX as u32 } else { 1 << 30 },
+            q_step,
+            q_min: 1 << 29,
+            values: [],
+            steps: [],
+            zeros: 1,
+        };
+        for q_step in [0, 1, 2, 255, 256, 257, 4095, 4096, 8191, 100_000] {
+            for q_step in [q_step, -q_step] {
+                for pixels in [2, 3, 16, 511, 1021, 1022] {
+                    let walk = walk(q_step);
+                    let least = i64::from(walk.q) + i64::from(q_step.min(0)) * i64::from(pixels);
+                    let is_level = i64::from(q_step.abs()) * i64::from(pixels * pixels) * 8 <= least;
+                    // Of steep ones nothing is promised but that they are not level.
+                    assert!(!walk.is_level(pixels) || is_level, "{q_step}, {pixels}");
+                    assert!(
+                        q_step.abs() >= 1 << 12 || walk.is_level(pixels) == is_level,
+                        "{q_step}, {pixels}"
+                    );
+                }
+            }
+        }
+    }
 }
