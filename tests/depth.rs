@@ -199,9 +199,9 @@ fn in_3_000_scenes_bands_of_1_2_7_and_16_rows_give_the_words_of_the_whole() {
 fn small_triangle() -> impl Strategy<Value = (Strip, Triangle)> {
     let places = (1..=64_u32, 1..=64_u32).prop_flat_map(|(width, height)| {
         let place = move || (0..=16 * width as i32, 0..=16 * height as i32);
-        let thin = (place(), place(), 0.0..=1.0_f64, -30..=30_i32, -30..=30_i32).prop_map(
+        let thin = (place(), place(), 0..=16_i32, -30..=30_i32, -30..=30_i32).prop_map(
             move |(a, b, along, dx, dy)| {
-                let between = |a: i32, b: i32| a + (f64::from(b - a) * along) as i32;
+                let between = |a: i32, b: i32| a + (b - a) * along / 16;
                 let x = (between(a.0, b.0) + dx).clamp(0, 16 * width as i32);
                 [a, b, (x, (between(a.1, b.1) + dy).clamp(0, 16 * height as i32))]
             },

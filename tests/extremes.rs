@@ -236,7 +236,7 @@ fn between_planes_that_coincide_or_are_the_wrong_way_round_there_is_nothing() {
     let tilted = |z: f32| vertices(&[[-2.0, -2.0, z], [2.0, -2.0, z], [2.0, 2.0, -z], [-2.0, 2.0, -z]]);
     let (mut cases, bit) = (0, 1.0 / 65536.0);
     for camera in [Camera::focal(30.0, size), Camera::orthographic(9.0, size)] {
-        for near in [0.25, 0.3, 1.0, 1.000_015_3, 2.0, 3.141_6, 100.007, 3000.5] {
+        for near in [0.25, 0.3, 1.0, 1.000_015_3, 2.0, 3.7, 100.007, 3000.5] {
             for far in [near, near - bit, near - 3.0 * bit, near / 2.0] {
                 for (scale, tilt) in
                     [0.01, 0.3, 1.0, 7.0, 300.0].into_iter().flat_map(|s| [(s, 0.0), (s, 0.5)])

@@ -602,8 +602,8 @@ fn triangles_of_numbers_of_all_sizes_overflow_nowhere_200_000_cases() {
 /// An `f32` of any size, as [`of_any_size`].
 fn number_of_any_size() -> BoxedStrategy<f32> {
     prop_oneof![
-        4 => of_any_size(i32::MAX).prop_map(|bits| bits as f32 / 65536.0),
-        2 => of_any_size(16 << 16).prop_map(|bits| bits as f32 / 65536.0),
+        4 => of_any_size(i32::MAX).prop_map(|bits| I16F16::from_bits(bits).to_num()),
+        2 => of_any_size(16 << 16).prop_map(|bits| I16F16::from_bits(bits).to_num()),
         1 => number(),
     ]
     .boxed()
