@@ -407,7 +407,7 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
                 .map(|texel| texel << (16 - scale_log2));
             let corners = sprite([x, y, to[0], to[1]], uv, way).map(|corner| Corner { q, ..corner });
             let halves = halves(corners, diagonal);
-            let strip = Strip::new((to[0] as u32 + 15) / 16, (to[1] as u32 + 15) / 16, 0);
+            let strip = Strip::new((to[0] as u32).div_ceil(16), (to[1] as u32).div_ceil(16), 0);
             for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
                 let texture = texture.wrap(if clamp { Wrap::Clamp } else { Wrap::Repeat });
                 let material = Material::textured(&texture).texture_scale(scale_log2 as u8);

@@ -216,7 +216,7 @@ impl Clip {
     #[inline(never)]
     fn distance(&self, polygon: &Polygon<'_>, i: usize, side: usize) -> i64 {
         let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
-        let at = if side % 2 == 0 { at } else { -at };
+        let at = if side.is_multiple_of(2) { at } else { -at };
         match side {
             0 => at - polygon.planes[0],
             1 => at + polygon.planes[1],
