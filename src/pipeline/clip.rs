@@ -14,7 +14,7 @@
 
 mod cut;
 
-pub(super) use cut::MOST_CORNERS;
+pub(crate) use cut::MOST_CORNERS;
 
 use super::color::Coloring;
 use super::transform::{FINE, ToClip, focal_log2, least_w};
@@ -49,8 +49,8 @@ const GUARD_BAND: RangeInclusive<i32> = -GUARD..=GUARD;
 const GUARD: i32 = 1023 * 16 + 8;
 
 /// Where clipping cuts, ±1022¾ px: beyond the centres of the first and the last column and row that may be drawn, −1022½ and
-/// 1022½, so that nothing is missing there, and ¾ px inside the guard band, so that rounding stays in it. A corner on this line is
-/// rounded by 1/32 px, and was off by 1/20 px at most before: [`cut`] has the sum. Less than ¼ px is what both sides need.
+/// 1022½, so that nothing is missing there, and ¾ px inside the guard band, so that rounding stays in it. A corner on this line is off
+/// by less than ¼ px, rounding included: [`cut`] has the sum.
 const CUT: RangeInclusive<i32> = -CUT_AT..=CUT_AT;
 const CUT_AT: i32 = 1022 * 16 + 12;
 

@@ -15,6 +15,7 @@
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::Coloring;
 use super::draw::needs;
+use super::fan::{Runs, piece};
 use super::patch::{Patch, STRAIGHT};
 use super::setup::{Cull, Needs, Oriented, TriangleSetup, position};
 use super::shade::Shader;
@@ -107,6 +108,29 @@ where
             let span = Span::new(setup, start, y);
             result = target.fill_contiguous(&area, Colors::new(shader, run, span, end, seen));
         });
+        result
+    }
+
+    /// Draws a polygon that is [folded](super::fan).
+    #[cold]
+    #[inline(never)]
+    fn draw_folded<S: Shader<F>>(
+        &mut self,
+        polygon: &[ScreenVertex],
+        cull: Cull,
+        is_orthographic: bool,
+        shader: &S,
+    ) -> Result<(), T::Error> {
+        let window = self.window.clone();
+        let mut runs = Runs::new(polygon, &window);
+        let mut result = Ok(());
+        while result.is_ok()
+            && let Some((run, corners)) = runs.next()
+        {
+            self.window = run;
+            result = self.draw(corners, cull, is_orthographic, shader);
+        }
+        self.window = window;
         result
     }
 
@@ -336,19 +360,19 @@ impl Posed {
         T: DrawTarget<Color = F::Color>,
     {
         let mut corners = [ScreenVertex::default(); MOST_CORNERS];
-        let count = self.cut(half, side, &mut corners);
-        let [first, rest @ ..] = &corners;
-        for pair in rest.windows(2).take(count.saturating_sub(2)) {
-            if let [second, third] = pair {
-                direct.draw([first, second, third], side.cull, self.is_orthographic, &side.shader)?;
-            }
+        let (count, is_folded) = self.cut(half, side, &mut corners);
+        let polygon = corners.get(..count).unwrap_or_default();
+        if is_folded {
+            return direct.draw_folded(polygon, side.cull, self.is_orthographic, &side.shader);
         }
-        Ok(())
+        (0..)
+            .map_while(|number| piece(polygon, number))
+            .try_for_each(|corners| direct.draw(corners, side.cull, self.is_orthographic, &side.shader))
     }
 
-    /// How many corners what is left of a triangle has.
+    /// As [`Clip::cut`].
     #[inline(never)]
-    fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> usize {
+    fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
         self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to)
     }

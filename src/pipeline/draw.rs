@@ -2,6 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::{Coloring, dim};
+use super::fan::{Runs, piece};
 use super::setup::{Cull, Needs, Oriented, TriangleSetup, area, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
@@ -62,8 +63,14 @@ pub(crate) fn draw<F, D, S>(
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
     let mut cache = Cache::ZERO;
     cache.forget();
-    while let Some(triangle) = placer.next(&mut cache, stats) {
-        raster.draw_oriented(&triangle, stats);
+    loop {
+        while let Some(triangle) = placer.next(&mut cache, stats) {
+            raster.draw_oriented(&triangle, stats);
+        }
+        let Some(polygon) = cache.take_folded() else {
+            return;
+        };
+        raster.draw_folded(polygon, placer.cull, stats);
     }
 }
 
@@ -80,6 +87,8 @@ struct Cache {
     newest: u8,
     /// How many pieces are to be drawn of the triangle that was cut last.
     pieces: u8,
+    /// How many corners that has, if it is folded and is to be drawn.
+    folded: u8,
     /// How many of the mesh's triangles were looked at.
     triangles: usize,
     /// Where the last vertex with these lowest bits of its index is. (It may be there without a hint, and is placed again then.)
@@ -92,6 +101,7 @@ impl Cache {
         owners: [0; CACHED],
         newest: 0,
         pieces: 0,
+        folded: 0,
         triangles: 0,
         hints: [0; HINTS],
         vertices: [ScreenVertex::ZERO; CACHED],
@@ -102,6 +112,14 @@ impl Cache {
         self.owners = [0; CACHED];
         self.owners[0] = 1;
         [self.hints[0], self.hints[1]] = [0, 1];
+    }
+
+    /// The triangle that was cut last, if it is folded, once.
+    #[cold]
+    #[inline(never)]
+    fn take_folded(&mut self) -> Option<&[ScreenVertex]> {
+        let count = core::mem::take(&mut self.folded);
+        self.vertices.get(..count.into()).filter(|polygon| !polygon.is_empty())
     }
 
     /// The slot of a vertex.
@@ -145,7 +163,8 @@ struct Placer<'a> {
 }
 
 impl Placer<'_> {
-    /// The next triangle, or piece of one that was cut, that is not left out. Those that are, more than half of a closed mesh,
+    /// The next triangle, or piece of one that was cut, that is not left out; none at the end, or if [`Cache::take_folded`] has one.
+    /// Those that are left out, more than half of a closed mesh,
     /// get no further than this loop, and vertices that only they have need nothing but a position.
     #[inline(never)]
     fn next<'c>(&self, cache: &'c mut Cache, stats: &mut impl Count) -> Option<Oriented<'c>> {
@@ -158,6 +177,9 @@ impl Placer<'_> {
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
                 self.cut(cache, stats);
+                if cache.folded > 0 {
+                    return None;
+                }
                 if self.find_piece(cache, stats) {
                     return self.piece(cache);
                 }
@@ -250,11 +272,15 @@ impl Placer<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
-        let count = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
+        let (count, is_folded) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }
-        cache.pieces = count.saturating_sub(2) as u8;
+        if is_folded {
+            cache.folded = count as u8;
+        } else {
+            cache.pieces = count.saturating_sub(2) as u8;
+        }
     }
 
     /// Whether there is a piece left, of a triangle that was cut, that is not left out.
@@ -275,9 +301,7 @@ impl Placer<'_> {
     #[cold]
     #[inline(never)]
     fn piece<'c>(&self, cache: &'c Cache) -> Option<Oriented<'c>> {
-        let [first, rest @ ..] = &cache.vertices;
-        let [second, third, ..] = rest.get(usize::from(cache.pieces)..)? else { return None };
-        Oriented::new([first, second, third], self.cull)
+        Oriented::new(piece(&cache.vertices, cache.pieces.into())?, self.cull)
     }
 }
 
@@ -287,7 +311,7 @@ pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Op
     let mut at = [ScreenVertex::default(); MOST_CORNERS];
     // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
     let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
-    let count = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
+    let (count, _) = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
     at.first().filter(|_| count > 0).copied()
 }
 
@@ -383,6 +407,21 @@ where
     fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
         self.setup.corners = triangle.vertices.map(position);
         self.draw_placed(triangle, stats);
+    }
+
+    /// A polygon that is [folded](super::fan).
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull, stats: &mut impl Count) {
+        let window = self.window.clone();
+        let mut runs = Runs::new(polygon, &window);
+        let mut is_drawn = false;
+        while let Some((run, corners)) = runs.next() {
+            (self.window, is_drawn) = (run, true);
+            self.draw(corners, cull, &mut ());
+        }
+        self.window = window;
+        stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
     }
 
     /// A triangle whose corners are in the set-up.

@@ -28,6 +28,7 @@ mod straight;
 mod transform;
 mod walk;
 
+pub(crate) use clip::MOST_CORNERS;
 pub use clip::ScreenVertex;
 pub use color::Coloring;
 pub(crate) use colors::{Colors, Gray, LitTexels, RedBlueGreen, color, lit};

@@ -2,6 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::{Coloring, dim};
+use super::fan::rows;
 use super::listed::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::setup::{Cull, area, in_order};
 use super::shade::{Inputs, Shader};
@@ -255,9 +256,13 @@ impl Recorder<'_, '_> {
         stats.count(|stats| &mut stats.clipped);
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        let count = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
+        let (count, is_folded) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
+        }
+        let seen = polygon.get(..count).unwrap_or_default();
+        if is_folded {
+            return self.add_folded(seen, stats);
         }
         let mut slots = [None; MOST_CORNERS];
         for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
@@ -283,6 +288,27 @@ impl Recorder<'_, '_> {
             self.add([a, b, c], area, rows)?;
         }
         Ok(())
+    }
+
+    /// A polygon that is [folded](super::fan): all its corners, one behind the other.
+    #[cold]
+    #[inline(never)]
+    fn add_folded(&mut self, polygon: &[ScreenVertex], stats: &mut impl Count) -> Result<(), Full> {
+        let rows = rows(polygon, &self.window);
+        if rows.is_empty() {
+            stats.count(|stats| &mut stats.out_of_sight);
+            return Ok(());
+        }
+        stats.count(|stats| &mut stats.drawn);
+        let mut ends = [None, None];
+        for corner in polygon {
+            let slot = self.push(corner)?;
+            ends = [ends[0].or(Some(slot)), Some(slot)];
+        }
+        let [first, last] = ends.map(Option::unwrap_or_default);
+        let rows = [rows.start, rows.end - 1].map(|row| (row >> ROWS_LOG2) as u8);
+        let corners = [first, first, last];
+        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
     /// A corner that no vertex of the mesh stands for: its slot, until [`Recorder::move_together`].

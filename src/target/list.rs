@@ -6,8 +6,8 @@ use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
 use super::{Background, Band, DepthFormat, PixelFormat};
 use crate::math::Pose;
 use crate::pipeline::{
-    Count, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_SLOTS, Raster, ScreenVertex, Shader, Style,
-    Window, record,
+    Count, Full, Inputs, ListTriangle, ListVertex, ListView, MOST_CORNERS, MOST_SLOTS, Raster, ScreenVertex,
+    Shader, Style, Window, record,
 };
 use crate::scene::{Camera, Material, Mesh, Vertex, Viewport};
 use core::fmt;
@@ -241,9 +241,27 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
             (draw, count) = (other, other.end - first);
             raster.change(draw.shader, kind(draw), within(draw));
         }
+        if triangle.is_folded() {
+            draw_folded(view, triangle, draw, &mut raster);
+            continue;
+        }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw_in_order(corners.each_ref());
     }
+}
+
+/// A polygon that rounding folded. Its corners are not on the stack while others are drawn.
+#[cold]
+#[inline(never)]
+fn draw_folded<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
+    view: &ListView<'_>,
+    folded: &ListTriangle,
+    draw: &Draw<'_, S>,
+    raster: &mut Raster<'_, '_, F, Z, S>,
+) {
+    let mut corners = [ScreenVertex::default(); MOST_CORNERS];
+    let polygon = view.polygon(folded, draw.inputs, draw.vertices, &mut corners);
+    raster.draw_folded(polygon, draw.shader.cull(), &mut ());
 }
 
 impl<'a, const V: usize, const T: usize, const D: usize, S, F> Canvas<'a, S>
