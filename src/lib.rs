@@ -8,7 +8,7 @@
 //! | axes | right-handed; +x right, +y up, the camera looks along −z; screen (0, 0) top left, y down, pixel centres at +½ |
 //! | facing | counter-clockwise on the screen is the front; [`Cull`] leaves out backs (default), fronts, or none; a mirrored pose keeps fronts fronts, and a mirrored camera too |
 //! | positions | snapped to 1/16 pixel; no vertex is rounded to whole pixels, anywhere |
-//! | coverage | top-left rule, exact: of the triangles that share an edge or a vertex exactly one covers a pixel centre that lies on it. No cracks, no double pixels, also after clipping, up to the last row and column of the largest target, for every scale and every near distance; near distances below 1/256 are limited to it |
+//! | coverage | top-left rule, exact: of the triangles that share an edge or a vertex exactly one covers a pixel centre that lies on it. No cracks, no double pixels, also after clipping (a triangle draws a pixel where its rounded outline goes around it, once), up to the last row and column of the largest target, for every scale and every near distance; near distances below 1/256 are limited to it |
 //! | perspective | [`QuarterPixel`], the default: every attribute is within ¼ pixel of exact, that is, its error divided by its largest exact change over one pixel step in x or y (or by 1 texel, or 1/255, if that is more). [`Exact`]: within 0.02. [`Affine`]: unbounded. No attribute leaves the range of its triangle's three vertices |
 //! | depth | 16-bit near/w, 1 … 65535, 0 is cleared; larger is nearer, strictly nearer wins, ties keep what was drawn first |
 //! | determinism | the same bytes on every machine and for every band height |

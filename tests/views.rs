@@ -37,10 +37,11 @@ use fixel::embedded_graphics::prelude::Size;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U10F22};
 use fixel::shapes::{Shape, cube, grid, icosphere, quad, torus, uv_sphere};
 use fixel::{
-    Band, Camera, Cull, Exact, Mesh, Pose, Quality, QuarterPixel, Quaternion, Stats, Turn, Vec3, Vertex,
+    Band, Camera, Cull, DisplayList, Exact, Mesh, Pose, Quality, QuarterPixel, Quaternion, Stats, Turn, Vec3,
+    Vertex,
 };
 use proptest::prelude::*;
-use reference::view::{Facet, View};
+use reference::view::{Facet, Placement, View};
 use reference::{Corner, Triangle, UNIT};
 
 const SCREEN: Strip = Strip::new(48, 40, 0);
@@ -762,4 +763,306 @@ fn a_floor_from_a_near_plane_of_almost_nothing_at_a_scale_of_512() {
         }
     }
     println!("a floor at scales of 2^-10 to 2^10: {worst:.3} px off, snapping included");
+}
+#[test]
+fn a_clipped_triangle_that_rounding_folds_covers_no_pixel_twice() {
+    let strip = Strip::new(53, 8, 0);
+    let camera = Camera::focal(478_464.0 / 65536.0, strip.size()).near(8192.0 / 65536.0);
+    let pose = pose_of_bits(
+        [[-7882, -4222, 0], [0, -5334, -15491], [4464, -14905, 5132]],
+        2_838_528,
+        [65536, 126_976, -38443],
+    );
+    let corners =
+        [[-24576, -23384, -18859], [25088, 30720, 19456], [25216, 30720, 19520]].map(vertex_of_bits);
+    let (record, facet, stats) = lone(&camera, strip, &pose, &corners);
+    let (mut drawn, mut nearest) = (0, f64::NEG_INFINITY);
+    for (pixel, _, met) in record.iter() {
+        let depth = facet.depth(centre(pixel));
+        assert!(met.times <= 1, "{pixel:?} is drawn {} times", met.times);
+        assert!(depth >= -MARGIN || met.times == 0, "{pixel:?} is drawn, {depth} px inside");
+        (drawn, nearest) = (drawn + met.times, nearest.max(depth));
+    }
+    // 0.06 px thick, and no centre is inside: the nearest, which was drawn twice, is 0.003 px outside.
+    println!("folded: {drawn} px, the nearest {nearest:.4} px inside; {stats:?}");
+    assert!((-0.01..0.0).contains(&nearest));
+}
+
+/// Four triangles between a quadrilateral's corners and a place on its diagonal, or a little beside it: one of them is a sliver.
+#[derive(Clone, Debug)]
+struct Slivers {
+    /// On both sides of the diagonal; the diagonal; how far along it the fifth vertex lies, and how far beside it; bits.
+    places: [[i16; 2]; 4],
+    along: f64,
+    beside: [i16; 2],
+    attitude: [u16; 3],
+    scale: f64,
+    /// What the camera looks at, by the shares of the corners, and from how far away; where it stands, off that line.
+    eye: ([f64; 4], f64, [f64; 2]),
+    roll: u16,
+    focal: f32,
+    near: f64,
+}
+
+fn slivers() -> impl Strategy<Value = Slivers> {
+    let place = || [-10000..10000_i16, -10000..10000_i16];
+    let beside = [-6..=6_i16, -6..=6_i16];
+    let share = || 0.0..1.0_f64;
+    let eye = ([share(), share(), share(), share()], -3.0..1.0_f64, [-1.0..1.0_f64, -1.0..1.0]);
+    let lens = (prop_oneof![3 => 2.0..60.0_f32, 1 => 60.0..3000.0_f32], -2.4..0.5_f64, -2.0..3.0_f64);
+    let shape = (place(), place(), place(), 0.05..0.95_f64, beside);
+    (shape, any::<[u16; 3]>(), eye, any::<u16>(), lens).prop_map(
+        |((p, q, r, along, beside), attitude, eye, roll, (focal, near, scale))| {
+            // The fourth corner opposite to the second.
+            let s = [0, 1].map(|i| (i32::from(p[i]) + i32::from(r[i]) - i32::from(q[i])) as i16);
+            Slivers { places: [p, q, r, s], along, beside, attitude, scale, eye, roll, focal, near }
+        },
+    )
+}
+
+impl Slivers {
+    fn model(&self) -> Model {
+        let [p, q, r, s] = self.places;
+        let m = [0, 1].map(|i| {
+            let (from, to) = (f64::from(p[i]), f64::from(r[i]));
+            (from + (to - from) * self.along).round() as i16 + self.beside[i]
+        });
+        let vertices = [p, q, r, s, m].map(|[x, y]| vertex_of_bits([x, y, 0])).to_vec();
+        Model::with_texels(vertices, vec![[0, 1, 4], [1, 2, 4], [0, 4, 2], [0, 2, 3]])
+    }
+
+    fn pose(&self) -> Pose {
+        let [yaw, pitch, roll] = self.attitude.map(Turn::from_raw);
+        let scale = U10F22::saturating_from_num(10_f64.powf(self.scale));
+        Pose::from_quaternion(Quaternion::from_euler(yaw, pitch, roll)).scaled(scale)
+    }
+
+    fn camera(&self, size: Size) -> Camera {
+        let Placement { rotation, scale: [scale, ..], .. } = common::view::placement(&self.pose());
+        let (shares, height, beside) = self.eye;
+        let sum: f64 = shares.iter().sum::<f64>().max(1e-3);
+        let at = [0, 1]
+            .map(|i| (0..4).map(|k| f64::from(self.places[k][i]) / 4096.0 * shares[k] / sum).sum::<f64>());
+        let height = 10_f64.powf(height);
+        let in_world = |at: [f64; 3]| {
+            world([0, 1, 2].map(|i| (0..3).map(|k| rotation[i][k] * at[k]).sum::<f64>() * scale))
+        };
+        let roll = Turn::from_raw(self.roll);
+        let camera = Camera::focal(self.focal, size).near((10_f64.powf(self.near) * scale.min(1.0)) as f32);
+        let camera = camera.at(in_world([at[0] + beside[0], at[1] + beside[1], height]));
+        let camera = camera.heading(Turn::from_raw(self.roll.wrapping_mul(7)), Turn::ZERO, roll);
+        camera.look_at(in_world([at[0], at[1], 0.0]), camera.unproject(I12F4::ZERO, I12F4::MIN, I16F16::ONE))
+    }
+}
+
+#[test]
+fn clipped_slivers_cover_each_pixel_once_and_what_neighbours_leave_in_40_000_cases() {
+    let strip = Strip::new(48, 40, 0);
+    let counts = RefCell::new([0_u32; 5]);
+    for_all("clipped slivers", 40_000, slivers(), |slivers| {
+        let (model, pose, camera) = (slivers.model(), slivers.pose(), slivers.camera(strip.size()));
+        let mesh = model.mesh();
+        let draw = |mesh: &Mesh<'_>, cull| {
+            let mut record = Record::blank(strip);
+            let mut band =
+                Band::<Recording, Counting>::new(strip.size(), &mut record.pixels, &mut record.depth)
+                    .expect("the sizes agree");
+            let mut stats = Stats::default();
+            let shader = Numbered::<QuarterPixel> { number: 0, cull, quality: PhantomData };
+            camera.draw_counted(mesh, &pose, &shader, &mut band, &mut stats);
+            (record, stats)
+        };
+        // Each alone: no pixel twice, from a list the same, and what is front or back of it is all of it.
+        let mut clipped = 0;
+        for number in 0..4 {
+            let triangle = mesh.part(number, number + 1);
+            let (both, stats) = draw(&triangle, Cull::None);
+            clipped += stats.clipped;
+            let [front, back] = [Cull::Back, Cull::Front].map(|cull| draw(&triangle, cull).0);
+            for (i, (pixel, _, met)) in both.iter().enumerate() {
+                prop_assert!(
+                    met.times <= 1,
+                    "triangle {} is drawn {} times at {:?}",
+                    number,
+                    met.times,
+                    pixel
+                );
+                prop_assert_eq!(front.depth[i].times + back.depth[i].times, met.times, "{:?}", pixel);
+            }
+            let shader = Numbered::<QuarterPixel> { number: 0, cull: Cull::None, quality: PhantomData };
+            let mut list = DisplayList::<40, 20, 1, _, Recording>::new();
+            camera.draw(&triangle, &pose, &shader, &mut list).expect("there is room");
+            let mut listed = Record::blank(strip);
+            for rows in 0..8 {
+                let range = rows * 5 * 48..(rows + 1) * 5 * 48;
+                let (pixels, depth) = (&mut listed.pixels[range.clone()], &mut listed.depth[range]);
+                let mut band = Band::<Recording, Counting>::new(Size::new(48, 5), pixels, depth)
+                    .expect("the sizes agree");
+                list.render(rows as u32 * 5, &mut band);
+            }
+            prop_assert!(listed == both, "from a list triangle {} is another", number);
+            // A polygon that is kept whole.
+            let [corners, kept, _] = list.lengths();
+            counts.borrow_mut()[2] += u32::from(stats.clipped > 0 && corners > 3 && kept == 1);
+        }
+        // All together: what goes around each pixel is what goes around it without rounding.
+        let [front, back] = [Cull::Back, Cull::Front].map(|cull| draw(&mesh, cull).0);
+        let exact = view(&camera, &pose, false);
+        let place = |i: usize| position(&model.vertices[i]);
+        let halves =
+            [exact.facet([place(0), place(1), place(2)]), exact.facet([place(0), place(2), place(3)])];
+        let sides = || {
+            halves
+                .iter()
+                .zip([2, 0])
+                .flat_map(|(half, shared)| half.outline.iter().filter(move |side| side.edge != Some(shared)))
+        };
+        let mut seen = false;
+        for ((pixel, _, front), (_, _, back)) in front.iter().zip(back.iter()) {
+            let at = centre(pixel);
+            if sides().map(|side| side.distance(at)).fold(f64::INFINITY, f64::min) <= MARGIN {
+                continue;
+            }
+            let is_inside = halves.iter().any(|half| half.depth(at) >= -SNAPPING);
+            seen |= is_inside;
+            let around = front.times as i32 - back.times as i32;
+            let wanted = if is_inside { -(halves[0].turn.signum() as i32) } else { 0 };
+            prop_assert_eq!(around, wanted, "{} fronts, {} backs at {:?}", front.times, back.times, pixel);
+        }
+        let mut counts = counts.borrow_mut();
+        counts[0] += u32::from(seen);
+        counts[1] += clipped;
+        Ok(())
+    });
+    let [seen, clipped, folded, ..] = counts.into_inner();
+    println!(
+        "clipped slivers: {seen} views with pixels, {clipped} triangles clipped, {folded} of them kept whole"
+    );
+    assert!(seen > common::cases(40_000) / 4 && clipped > common::cases(40_000) / 2);
+}
+
+/// A triangle of any size, seen from close by through any lens.
+#[derive(Clone, Debug)]
+struct Close {
+    places: [[i16; 3]; 3],
+    attitude: [u16; 3],
+    /// log₂.
+    scale: f64,
+    /// Where on it the camera looks, from where, and from how far away in log₂ world units.
+    shares: [f64; 3],
+    from: [u16; 2],
+    distance: f64,
+    /// log₂.
+    focal: f64,
+    near: f64,
+    orthographic: bool,
+    /// At the screen's corner, or at the last row and column of the largest.
+    is_last: bool,
+}
+
+fn closes() -> impl Strategy<Value = Close> {
+    let place = || prop_oneof![4 => any::<[i16; 3]>(), 1 => [-300..300_i16, -300..300_i16, -300..300_i16]];
+    let scale = prop_oneof![3 => -10.0..10.0_f64, 1 => Just(10.0)];
+    let share = || 0.01..1.0_f64;
+    let near = prop_oneof![2 => Just(-8.0), 2 => -8.0..-6.0_f64, 1 => -6.0..4.0_f64];
+    let lens =
+        (prop_oneof![6 => 1.0..11.0_f64, 1 => Just(13.0), 1 => Just(-4.0)], near, prop::bool::weighted(0.2));
+    let eye =
+        ([share(), share(), share()], any::<[u16; 2]>(), prop_oneof![2 => -8.0..0.0_f64, 1 => 0.0..10.0]);
+    ([place(), place(), place()], any::<[u16; 3]>(), scale, eye, lens, any::<bool>()).prop_map(
+        |(places, attitude, scale, (shares, from, distance), (focal, near, orthographic), is_last)| Close {
+            places,
+            attitude,
+            scale,
+            shares,
+            from,
+            distance,
+            focal,
+            near,
+            orthographic,
+            is_last,
+        },
+    )
+}
+
+#[test]
+fn no_visible_triangle_is_left_out_at_any_scale_and_near_distance_in_30_000_cases() {
+    let counts = RefCell::new([0_u64; 4]);
+    let worst = RefCell::new(0.0_f64);
+    for_all("close", 30_000, closes(), |close| {
+        let strip = if close.is_last { Strip::new(1023, 2, 1021) } else { Strip::new(48, 40, 0) };
+        let size = Size::new(strip.width, strip.row + strip.height);
+        let [yaw, pitch, roll] = close.attitude.map(Turn::from_raw);
+        let pose = Pose::from_quaternion(Quaternion::from_euler(yaw, pitch, roll))
+            .scaled(U10F22::saturating_from_num(2_f64.powf(close.scale)));
+        let Placement { rotation, scale: [scale, ..], .. } = common::view::placement(&pose);
+        let corners = close.places.map(vertex_of_bits);
+        let sum: f64 = close.shares.iter().sum();
+        let at: [f64; 3] = [0, 1, 2].map(|i| {
+            let at = [0, 1, 2]
+                .map(|axis| (0..3).map(|k| position(&corners[k])[axis] * close.shares[k] / sum).sum::<f64>());
+            (0..3).map(|k| rotation[i][k] * at[k]).sum::<f64>() * scale
+        });
+        let lens = 2_f64.powf(close.focal) as f32;
+        let camera = if close.orthographic {
+            Camera::orthographic(lens, size).far(30_000.0)
+        } else {
+            Camera::focal(lens, size)
+        };
+        let [yaw, pitch] = close.from.map(Turn::from_raw);
+        let camera = camera.near(2_f64.powf(close.near) as f32).orbit(
+            world(at),
+            I16F16::from_num(2_f64.powf(close.distance)),
+            yaw,
+            pitch,
+        );
+        let mut record = Record::blank(strip);
+        let mut band = Band::<Recording, Counting>::new(strip.size(), &mut record.pixels, &mut record.depth)
+            .expect("the sizes agree")
+            .starting_at(strip.row);
+        let shader = Numbered::<QuarterPixel> { number: 0, cull: Cull::None, quality: PhantomData };
+        let mut stats = Stats::default();
+        camera.draw_counted(&Mesh::new(&corners, &[[0, 1, 2]]), &pose, &shader, &mut band, &mut stats);
+
+        let facet = view(&camera, &pose, close.orthographic).facet(corners.each_ref().map(position));
+        // As the crate states it: w in 2^-38 and less, as a mesh has it that is larger than 1.
+        let (near, _) = camera.planes();
+        let w = if close.orthographic { 1.0 } else { near.to_num::<f64>() };
+        let units = w * 2_f64.powf(38.0 - scale.log2().ceil().max(0.0));
+        let focal = camera.focal_length().to_num::<f64>();
+        let before = ((9.0 * 2.0 * focal + 17.0 * 1023.0 + 20480.0) / units).max(1.0 / 128.0);
+        // Along both axes.
+        let margin = (before + 1.0 / 32.0) * 2_f64.sqrt();
+        let mut counts = counts.borrow_mut();
+        let mut seen = false;
+        for (pixel, _, met) in record.iter() {
+            let depth = facet.depth(centre(pixel));
+            prop_assert!(met.times <= 1, "{:?} is drawn {} times", pixel, met.times);
+            prop_assert!(
+                depth < margin || met.times == 1,
+                "{:?} is missing, {} px inside, {:?}",
+                pixel,
+                depth,
+                stats
+            );
+            prop_assert!(depth > -margin || met.times == 0, "{:?} is drawn, {} px outside", pixel, -depth);
+            if (depth > 0.0) != (met.times > 0) && depth.is_finite() {
+                let worst = &mut worst.borrow_mut();
+                **worst = worst.max(depth.abs());
+            }
+            seen |= depth >= margin;
+            counts[1] += u64::from(depth >= margin);
+        }
+        counts[0] += u64::from(seen);
+        counts[2] += u64::from(seen && stats.clipped > 0);
+        counts[3] += u64::from(seen && scale > 500.0);
+        Ok(())
+    });
+    let [seen, pixels, clipped, large] = counts.into_inner();
+    println!(
+        "close: {seen} triangles seen, {clipped} clipped, {large} at scales of more than 500; {pixels} pixels had to be; outlines off by \
+         {:.4} px",
+        worst.into_inner()
+    );
+    assert!(seen > u64::from(common::cases(30_000)) / 3 && clipped > u64::from(common::cases(30_000)) / 5);
 }

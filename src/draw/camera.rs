@@ -39,7 +39,7 @@ impl Camera {
     /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px. Before rounding it is off by at most 1/1024
     /// px, and nearer than ¼ of a unit (of the mesh or of the world, whichever is longer) by ¼/w of that as much, but not by more than
     /// 1/128 px, up to the near plane: for focal lengths of up to 1024 pixels and scales of up to 100, at any distance from the
-    /// world's origin. At the largest scale it may be 1/28 px there. So it is with the corners at which planes cut a triangle; and
+    /// world's origin. At the largest scale it may be 1/22 px there. So it is with the corners at which planes cut a triangle; and
     /// none that is seen is left out, at any scale. Where the scales of
     /// the mesh's axes differ, all vertices are placed as exactly as if all axes had the largest.
     ///
@@ -79,6 +79,6 @@ pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Op
     let mut at = [ScreenVertex::default(); MOST_CORNERS];
     // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
     let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
-    let count = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
+    let (count, _) = clip.cut(&to_clip, &Coloring::default(), [corner; 3], &mut at);
     at.first().filter(|_| count > 0).copied()
 }

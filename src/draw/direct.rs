@@ -18,10 +18,10 @@
 
 use super::triangle::needs;
 use crate::frame::{NoDepth, PixelFormat, Window};
-use crate::geometry::{Clip, Coloring, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, position};
+use crate::geometry::{Clip, Coloring, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, piece, position};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
-use crate::raster::{Needs, Rows, STRAIGHT, Span, TriangleSetup};
+use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
 use crate::shade::{Patch, Run, Shader, Textured};
 use core::ops::Range;
@@ -107,6 +107,29 @@ where
             let span = Span::new(setup, start, y);
             result = target.fill_contiguous(&area, Colors::new(shader, run, span, end, seen));
         });
+        result
+    }
+
+    /// Draws a polygon that is folded.
+    #[cold]
+    #[inline(never)]
+    fn draw_folded<S: Shader<F>>(
+        &mut self,
+        polygon: &[ScreenVertex],
+        cull: Cull,
+        is_orthographic: bool,
+        shader: &S,
+    ) -> Result<(), T::Error> {
+        let window = self.window.clone();
+        let mut runs = Runs::new(polygon, &window);
+        let mut result = Ok(());
+        while result.is_ok()
+            && let Some((run, corners)) = runs.next()
+        {
+            self.window = run;
+            result = self.draw(corners, cull, is_orthographic, shader);
+        }
+        self.window = window;
         result
     }
 
@@ -340,19 +363,19 @@ impl Posed {
         T: DrawTarget<Color = F::Color>,
     {
         let mut corners = [ScreenVertex::default(); MOST_CORNERS];
-        let count = self.cut(half, side, &mut corners);
-        let [first, rest @ ..] = &corners;
-        for pair in rest.windows(2).take(count.saturating_sub(2)) {
-            if let [second, third] = pair {
-                direct.draw([first, second, third], side.cull, self.is_orthographic, &side.shader)?;
-            }
+        let (count, is_folded) = self.cut(half, side, &mut corners);
+        let polygon = corners.get(..count).unwrap_or_default();
+        if is_folded {
+            return direct.draw_folded(polygon, side.cull, self.is_orthographic, &side.shader);
         }
-        Ok(())
+        (0..)
+            .map_while(|number| piece(polygon, number))
+            .try_for_each(|corners| direct.draw(corners, side.cull, self.is_orthographic, &side.shader))
     }
 
-    /// How many corners what is left of a triangle has.
+    /// As [`Clip::cut`].
     #[inline(never)]
-    fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> usize {
+    fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
         self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to)
     }

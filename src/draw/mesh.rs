@@ -47,8 +47,14 @@ pub(crate) fn draw<F, D, S>(
     let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
     let mut cache = VertexCache::ZERO;
     cache.forget();
-    while let Some(triangle) = assembler.next(&mut cache, stats) {
-        raster.draw_oriented(&triangle, stats);
+    loop {
+        while let Some(triangle) = assembler.next(&mut cache, stats) {
+            raster.draw_oriented(&triangle, stats);
+        }
+        let Some(polygon) = cache.take_folded() else {
+            return;
+        };
+        raster.draw_folded(polygon, cull, stats);
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Inputs, Oriented, RangeError, ScreenVertex, area, position};
-use crate::raster::{Needs, Packing, Rows, Span, Straight, TriangleSetup, visible};
+use crate::raster::{Needs, Packing, Rows, Runs, Span, Straight, TriangleSetup, visible};
 use crate::shade::{Patch, Quality, Run, Shader};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
@@ -107,6 +107,21 @@ where
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
         self.setup.corners = triangle.vertices.map(position);
         self.draw_placed(triangle, stats);
+    }
+
+    /// A polygon that is folded.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull, stats: &mut impl Count) {
+        let window = self.window.clone();
+        let mut runs = Runs::new(polygon, &window);
+        let mut is_drawn = false;
+        while let Some((run, corners)) = runs.next() {
+            (self.window, is_drawn) = (run, true);
+            self.draw(corners, cull, &mut ());
+        }
+        self.window = window;
+        stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
     }
 
     /// A triangle whose corners are in the set-up.

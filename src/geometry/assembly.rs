@@ -11,6 +11,7 @@
 use super::clip::Clip;
 use super::coloring::{Coloring, dim};
 use super::cut::MOST_CORNERS;
+use super::fan::piece;
 use super::orient::{Cull, Oriented, area, position};
 use super::screen::ScreenVertex;
 use super::stats::Count;
@@ -37,6 +38,8 @@ pub(crate) struct VertexCache {
     /// How many pieces of the last clipped triangle are still to come; they come from the last to the first, so it is the
     /// number of the current one too.
     pieces: u8,
+    /// How many corners the triangle that was cut last has, if it is folded and is to be drawn.
+    folded: u8,
     /// How many of the mesh's triangles were looked at.
     triangles: usize,
     /// For each index modulo [`HINTS`] the slot of the vertex that was placed last. A vertex whose hint another one took is not
@@ -51,6 +54,7 @@ impl VertexCache {
         owners: [0; CACHED],
         newest: 0,
         pieces: 0,
+        folded: 0,
         triangles: 0,
         hints: [0; HINTS],
         vertices: [ScreenVertex::ZERO; CACHED],
@@ -62,6 +66,14 @@ impl VertexCache {
         self.owners = [0; CACHED];
         self.owners[0] = 1;
         [self.hints[0], self.hints[1]] = [0, 1];
+    }
+
+    /// The triangle that was cut last, if it is folded, once.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn take_folded(&mut self) -> Option<&[ScreenVertex]> {
+        let count = core::mem::take(&mut self.folded);
+        self.vertices.get(..count.into()).filter(|polygon| !polygon.is_empty())
     }
 
     /// The slot of a vertex, if it is found.
@@ -124,6 +136,9 @@ impl Assembler<'_> {
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
                 self.cut(cache, stats);
+                if cache.folded > 0 {
+                    return None;
+                }
                 if self.find_piece(cache, stats) {
                     return self.piece(cache);
                 }
@@ -225,11 +240,15 @@ impl Assembler<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
-        let count = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
+        let (count, is_folded) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }
-        cache.pieces = count.saturating_sub(2) as u8;
+        if is_folded {
+            cache.folded = count as u8;
+        } else {
+            cache.pieces = count.saturating_sub(2) as u8;
+        }
     }
 
     /// Goes on to the next piece of the clipped triangle that is not culled. False if there is none.
@@ -250,8 +269,6 @@ impl Assembler<'_> {
     #[cold]
     #[inline(never)]
     fn piece<'c>(&self, cache: &'c VertexCache) -> Option<Oriented<'c>> {
-        let [first, rest @ ..] = &cache.vertices;
-        let [second, third, ..] = rest.get(usize::from(cache.pieces)..)? else { return None };
-        Oriented::new([first, second, third], self.cull)
+        Oriented::new(piece(&cache.vertices, cache.pieces.into())?, self.cull)
     }
 }

@@ -25,8 +25,8 @@ use crate::scene::{Bounds, Projection, Vertex};
 use core::ops::RangeInclusive;
 
 /// Where clipping cuts, ±1022¾ px: beyond the centres of the first and the last column and row that may be drawn, −1022½ and
-/// 1022½, so that nothing is missing there, and ¾ px inside the guard band, so that rounding stays in it. A corner on this line is
-/// rounded by 1/32 px, and was off by 1/20 px at most before: [`cut`] has the sum. Less than ¼ px is what both sides need.
+/// 1022½, so that nothing is missing there, and ¾ px inside the guard band, so that rounding stays in it. A corner on this line is off
+/// by less than ¼ px, rounding included: [`cut`](super::cut) has the sum.
 const CUT: RangeInclusive<i32> = -CUT_AT..=CUT_AT;
 pub(super) const CUT_AT: i32 = 1022 * 16 + 12;
 
@@ -38,7 +38,7 @@ pub(crate) struct Clip {
     /// The far plane in clip units, rounded down.
     pub(super) far: i32,
     /// From which w on vertices are placed by 32 bits: beyond the near plane.
-    least: i32,
+    pub(super) least: i32,
     /// Whether that is further than the near plane, so that clipping has to take all bits that it has.
     pub(super) is_fine: bool,
     /// Both planes as the camera has them, for clipping.

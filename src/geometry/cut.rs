@@ -4,20 +4,28 @@
 //! - Out: what is left of it, as a polygon of screen vertices, a fan around the first.
 //! - Assumes: at least one corner lies outside, or too near for 32 bits.
 //!
-//! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge.
+//! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge. A vertex that needs
+//! no clipping stays where the triangles have it that are not cut, and counts as inside all planes.
 //!
 //! # How exact corners are
 //!
-//! Coordinates have 46 bits here ([`FINE`] more than elsewhere), of which [`ToClip::place_fine`] gets less than 9 units wrong, and
-//! a cut 3 more. So before it is rounded to 1/16 px a corner is off by at most 12·(2^k + c)/w px, w being in these units, 2^k at
-//! least the focal length, and c its distance from the line of sight in pixels.
+//! Clip coordinates have 46 bits here, [`FINE`] more than elsewhere. Of these units [`ToClip::place_fine`] gets x, y and w less than
+//! 9 wrong, and two cuts and the last shift 8 more of w. x and y are held in units of 2⁻¹⁵ · 1/16 px · w, of which as much makes 10 in all.
+//! So before it is rounded to 1/16 px a corner is off by at most
 //!
-//! A mesh that reaches the eye has a unit of 2⁻²⁸ or less: its scale is below 2¹⁰, so its matrix is, and its translation is
-//! not longer than it reaches, 2¹⁴ (of a rotation; a matrix with elements up to 2 may make all of this four times as coarse). And w is
-//! at least near, 1/256: 2²⁰ units. For a focal length of 512 px, seen from the middle of the screen, that makes 1/57 px at the largest
-//! scale and 1/57 000 at a scale of 1; for the longest, at the guard band, 2 046 px beside a line of sight that leads past it, 1/7 px.
-//! Rounding adds 1/32. So whatever is cut stays inside the guard band, from which the planes keep ¾ px, and nothing has to be left
-//! out for want of bits; and at the last columns and rows, ¼ px inside the planes, nothing is missing.
+//! ```text
+//! (9·2^k + 17·c + 20 480) / w px,   2^k at least the focal length, c its distance from the line of sight in pixels
+//! ```
+//!
+//! w is at least near, 1/256. And a mesh that reaches the eye has a unit of 2⁻²⁸ or less: its scale is below 2¹⁰, and the way from its
+//! origin to the eye is not longer than it reaches, 2¹⁴ (this is said of a rotation; a matrix with elements up to 2 may be four times as coarse). So w
+//! is at least 2²⁰, and 2³⁰ at a scale of 1. For a focal length of 512 px that makes 1/25 px in the corner of a screen of 1023 px at the very
+//! most, and a thousandth of that at a scale of 1; for the longest focal length, at the border of the guard band and 3069 px beside a line of sight that
+//! leads far past it, 1/7 px.
+//!
+//! Rounding adds 1/32 px. Both together are below ¼ px: the planes, at ±1022¾ px, stay beyond the centres of the last columns and rows,
+//! which are filled; and what is cut stays inside the guard band, ¾ px beyond. So nothing that is seen has to be left out for
+//! want of bits. (What a matrix that is no rotation moves farther than that is put on the guard band's border.)
 
 use super::clip::{CUT_AT, Clip, FINER};
 use super::coloring::Coloring;
@@ -116,7 +124,7 @@ fn swap<T>(all: &mut [T], first: usize, last: usize) {
 
 impl Clip {
     /// Cuts a triangle that is not inside all planes, or has a corner too near for 32 bits, and puts what is left of it on the
-    /// screen, as a fan around its first vertex. Returns how many corners that has.
+    /// screen, as a fan around its first vertex. Returns how many corners that has, and whether it is [folded](super::fan).
     #[cold]
     #[inline(never)]
     pub(crate) fn cut(
@@ -125,7 +133,7 @@ impl Clip {
         coloring: &Coloring<'_>,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
-    ) -> usize {
+    ) -> (usize, bool) {
         let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
         let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
         for (i, vertex) in corners.into_iter().enumerate() {
@@ -142,8 +150,9 @@ impl Clip {
         for i in 0..count {
             self.put_on_screen(&mut polygon, i);
         }
-        polygon.rotate(center(polygon.vertices.get(..count).unwrap_or_default()));
-        count
+        let (first, is_folded) = center(polygon.vertices.get(..count).unwrap_or_default());
+        polygon.rotate(first);
+        (count, is_folded)
     }
 
     /// Where a vertex is before anything is cut.
@@ -156,26 +165,42 @@ impl Clip {
         polygon: &mut Polygon<'_>,
         i: usize,
     ) {
-        let coarse = if self.is_fine { [0; 3] } else { to_clip.place_all(vertex.position) };
-        for axis in [2, 0, 1] {
-            let at = if self.is_fine {
-                to_clip.place_fine(vertex.position, axis)
-            } else {
-                i64::from(coarse[axis]) << FINE
-            };
-            self.start_along(at, polygon, i, axis);
+        let mut may_be_inside = true;
+        if self.is_fine {
+            for axis in [2, 0, 1] {
+                self.start_along(to_clip, vertex, polygon, i, axis);
+            }
+        } else {
+            // The same from 32 bits, which are as good.
+            let [x, y, w] = to_clip.place_all(vertex.position);
+            let divisor = if self.flat != 0 { 1 << self.flat } else { w };
+            for (axis, at) in [(0, x), (1, y)] {
+                let center = wide(divisor, self.center[axis] >> FINER);
+                polygon.set(i, axis, ((i64::from(at) << self.scale) + center) >> (COARSER - FINE));
+            }
+            polygon.set(i, 2, i64::from(w) << FINE);
+            may_be_inside = w >= self.least;
         }
         self.look(polygon, i);
         let to = &mut polygon.vertices[i];
         to.set_attributes(vertex, coloring);
         let outside = to.y;
-        if !self.place_bare(to_clip, vertex, to) {
+        // Most often it is behind the eye.
+        if !may_be_inside || !self.place_bare(to_clip, vertex, to) {
             (to.x, to.y) = (NOT_PLACED, outside);
         }
     }
 
     #[inline(never)]
-    fn start_along(&self, mut at: i64, polygon: &mut Polygon<'_>, i: usize, axis: usize) {
+    fn start_along(
+        &self,
+        to_clip: &ToClip,
+        vertex: &Vertex,
+        polygon: &mut Polygon<'_>,
+        i: usize,
+        axis: usize,
+    ) {
+        let mut at = to_clip.place_fine(vertex.position, axis);
         if let Some(center) = self.center.get(axis) {
             let center = mul_long(self.divisor_of(polygon, i), (center >> FINER) << COARSER);
             at = ((at << 2) >> (2 + COARSER - self.scale)) + center;
@@ -216,7 +241,7 @@ impl Clip {
     #[inline(never)]
     fn distance(&self, polygon: &Polygon<'_>, i: usize, side: usize) -> i64 {
         let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
-        let at = if side.is_multiple_of(2) { at } else { -at };
+        let at = if side & 1 == 0 { at } else { -at };
         match side {
             0 => at - polygon.planes[0],
             1 => at + polygon.planes[1],
@@ -294,7 +319,11 @@ impl Clip {
             Some(&w) => polygon.set(to, 2, w),
             None => polygon.mix(2, [inside, outside, to], &t),
         }
-        self.look(polygon, to);
+        polygon.vertices[to].y = I12F4::ZERO;
+        // On a side nothing is outside the opposite one, and after the last sides no one asks.
+        if side < 4 {
+            self.look(polygon, to);
+        }
         let vertices = &mut *polygon.vertices;
         vertices[to].x = NOT_PLACED;
         vertices[to].u =
@@ -329,7 +358,7 @@ impl Ratio {
         let shift = whole.leading_zeros() - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
         let (before, whole) = (before << shift, whole << shift);
         // 1/whole = mantissa · 2⁻⁷⁸.
-        let mantissa = Reciprocal::precise((whole >> 17) as u32).mantissa;
+        let mantissa = Reciprocal::precise_normalised((whole >> 16) as u32, 1).mantissa;
         let upper = (mul_long(before, mantissa) >> 18).min(1 << 30) as i32;
         let rest = if is_fine { (before - mul_long(whole, upper)) as i32 } else { 0 };
         Self { upper, lower: (wide(rest, mantissa) >> 24) as i32 }

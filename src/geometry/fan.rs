@@ -13,13 +13,38 @@
 //!        ╲ ╲            │          Around 1 there are 1 2 3 and 1 3 0 instead, which cover just the polygon.
 //!            ──── 2 ────┘
 //! ```
+//!
+//! Where no vertex will do, because sides cross or because the polygon is no fan any more, it is **folded**:
+//!
+//! ```text
+//!   0 ─────────────── 3            0 1 and 2 3 cross, and beyond that the polygon shows its other side. Both are edges that
+//!      ╲           ╱               neighbours have too, with the same rounded ends, so the neighbours overlap there. Each of the
+//!          ╲   ╱                   triangles 0 1 2 and 0 2 3 covers a part of what is theirs; there the two have different
+//!            ╳                     senses.
+//!         2 ─── 1
+//! ```
+//!
+//! What is right follows from the outline alone. Walked once around, it goes around a pixel's centre n times: clockwise counts
+//! +1, counter-clockwise −1, and a centre on an edge is on the side that the top-left rule says. Of two triangles that share an edge the
+//! one walks it up and the other down, so that over all triangles of a mesh these numbers add up to what they would be without
+//! rounding: that is what no crack and no double pixel mean for a mesh, and what a triangle that is not clipped does, whose number is
+//! 1 or 0 (or −1, turned over by rounding, and is then culled). **A clipped triangle therefore draws a pixel where its
+//! outline goes around it in the sense that is not culled, and once.** (Clipping leaves a convex polygon, from whose topmost corner the two
+//! sides go down only. Rounding keeps that, so a row meets each side once: n is never 2.)
+//!
+//! The numbers of a fan's triangles add up to n, whatever the polygon. So where all have one sense each draws what it covers.
+//! In a folded one a triangle draws, of what it covers, the pixels where the sum has its own sense, and that no earlier one drew:
+//! `raster::folded` finds them row by row. That takes a while, and is rare: what folds is thinner than 1/8 px.
 
 use super::screen::ScreenVertex;
 
-/// The vertex around which no triangle is turned over, or the least of them.
+/// The vertex around which no triangle is turned over, or the least of them, and whether any is: whether the polygon is folded.
 #[inline(never)]
-pub(crate) fn center(polygon: &[ScreenVertex]) -> usize {
+pub(super) fn center(polygon: &[ScreenVertex]) -> (usize, bool) {
     let mut best = (u64::MAX, 0);
+    if polygon.is_empty() {
+        return (0, false);
+    }
     for first in 0..polygon.len() {
         let turned = turned_over(polygon, first);
         if turned < best.0 {
@@ -29,7 +54,7 @@ pub(crate) fn center(polygon: &[ScreenVertex]) -> usize {
             break;
         }
     }
-    best.1
+    (best.1, best.0 > 0)
 }
 
 /// Twice the area, in 1/256 px², of the triangles around a vertex that run the other way than the polygon.
@@ -51,6 +76,16 @@ fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
     (size - sum.unsigned_abs()) / 2
 }
 
+/// The corners of the fan's triangle number 0 … corners − 3.
+#[inline]
+pub(crate) fn piece(polygon: &[ScreenVertex], number: usize) -> Option<[&ScreenVertex; 3]> {
+    let (first, rest) = polygon.split_first()?;
+    match rest.get(number..)? {
+        [second, third, ..] => Some([first, second, third]),
+        _ => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -66,7 +101,7 @@ mod tests {
     }
 
     fn arrange(polygon: &mut [ScreenVertex]) {
-        polygon.rotate_left(center(polygon));
+        polygon.rotate_left(center(polygon).0);
     }
 
     #[test]

@@ -15,6 +15,7 @@ pub(crate) use clip::Clip;
 pub use coloring::Coloring;
 pub(crate) use coloring::{dim, is_gray};
 pub(crate) use cut::MOST_CORNERS;
+pub(crate) use fan::piece;
 pub use orient::Cull;
 pub(crate) use orient::{Oriented, area, in_order, position};
 pub use screen::{Inputs, RangeError, ScreenVertex};

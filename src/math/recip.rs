@@ -58,10 +58,18 @@ impl Reciprocal {
 
     /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors below 2³¹. (From there on half of `m`
     /// would lose a bit.) A divisor of 0 counts as 1.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn precise(divisor: u32) -> Self {
-        let Self { mantissa, zeros } = Self::coarse(divisor);
-        let half_m = ((divisor.max(1) << zeros) >> 1) as i32;
+        let divisor = divisor.max(1);
+        let zeros = divisor.leading_zeros();
+        Self::precise_normalised(divisor << zeros, zeros)
+    }
+
+    /// From the mantissa `m`, 2³¹ … 2³² − 1.
+    #[inline(never)]
+    pub(crate) fn precise_normalised(m: u32, zeros: u32) -> Self {
+        let Self { mantissa, zeros } = Self::coarse_normalised(m, zeros);
+        let half_m = (m >> 1) as i32;
         // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹, and y += y·r/2⁶¹.
         let r = (1 << 61) - wide(half_m, mantissa);
         let step = (wide(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;

@@ -2,6 +2,7 @@
 
 mod attribute;
 mod depth;
+mod folded;
 mod lean;
 mod packing;
 mod plane;
@@ -14,6 +15,7 @@ mod triangle;
 
 pub(crate) use attribute::{Attribute, short_inverse, towards_zero};
 pub(crate) use depth::visible;
+pub(crate) use folded::{Runs, rows_of_folded};
 pub(crate) use packing::Packing;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;

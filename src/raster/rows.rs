@@ -281,6 +281,14 @@ impl Rows {
     }
 }
 
+/// How many pixel centres of a row lie left of an edge, `top` above `bottom` (1/16 px) and the row between them.
+#[cold]
+pub(super) fn centers_left(top: &[i32; 2], bottom: &[i32; 2], row: i32) -> i32 {
+    let mut edge = Edge::default();
+    edge.long(top, bottom, row);
+    edge.x >> FRACTION
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,12 +8,13 @@ use super::capacity::CapacityError;
 use super::entries::{ListTriangle, ListVertex, ListView, MOST_SLOTS};
 use super::extent::Extent;
 use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
-use super::record::{Full, Style, record};
+use super::record::{Full, record};
+use super::style::Style;
 use crate::draw::canvas::Canvas;
 use crate::draw::canvas::sealed::Sealed;
 use crate::draw::triangle::Raster;
 use crate::frame::{Background, Band, DepthFormat, PixelFormat, Window};
-use crate::geometry::{Count, Inputs, ScreenVertex};
+use crate::geometry::{Count, Cull, Inputs, MOST_CORNERS, ScreenVertex};
 use crate::math::Pose;
 use crate::scene::{Camera, Mesh, Vertex, Viewport};
 use crate::shade::{Material, Shader};
@@ -112,6 +113,8 @@ struct Draw<'a, S> {
     /// The triangle behind the last.
     end: u16,
     inputs: Inputs,
+    /// Of the mesh as it is seen, perhaps mirrored.
+    cull: Cull,
     is_orthographic: bool,
     /// Whether all colours are grey.
     is_gray: bool,
@@ -235,6 +238,7 @@ impl<S> Draw<'_, S> {
             && core::ptr::eq(self.vertices, other.vertices)
             && self.viewport == other.viewport
             && self.inputs == other.inputs
+            && self.cull == other.cull
             && self.is_orthographic == other.is_orthographic
     }
 }
@@ -271,9 +275,27 @@ fn render<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
             (draw, count) = (other, other.end - first);
             raster.change(draw.shader, kind(draw), within(draw));
         }
+        if triangle.is_folded() {
+            draw_folded(view, triangle, draw, &mut raster);
+            continue;
+        }
         view.corners(triangle, draw.inputs, draw.vertices, &mut corners);
         raster.draw_in_order(corners.each_ref());
     }
+}
+
+/// A polygon that rounding folded. Its corners are not on the stack while others are drawn.
+#[cold]
+#[inline(never)]
+fn draw_folded<F: PixelFormat, Z: DepthFormat, S: Shader<F>>(
+    view: &ListView<'_>,
+    folded: &ListTriangle,
+    draw: &Draw<'_, S>,
+    raster: &mut Raster<'_, '_, F, Z, S>,
+) {
+    let mut corners = [ScreenVertex::default(); MOST_CORNERS];
+    let polygon = view.polygon(folded, draw.inputs, draw.vertices, &mut corners);
+    raster.draw_folded(polygon, draw.cull, &mut ());
 }
 
 impl<'a, const V: usize, const T: usize, const D: usize, S, F> Canvas<'a, S>
@@ -309,6 +331,7 @@ where
             viewport: camera.projection().viewport,
             end: self.triangles.len() as u16,
             inputs: style.inputs,
+            cull: style.cull,
             is_orthographic: camera.is_orthographic(),
             is_gray: *recorded.as_ref().unwrap_or(&false),
         };

@@ -58,6 +58,14 @@ const _: () = assert!(size_of::<ListTriangle>() == 8);
 /// Rows are kept in units of 2² = 4: those of the tallest screen, 0 … 1022, fit a byte.
 pub(crate) const ROWS_LOG2: u32 = 2;
 
+impl ListTriangle {
+    /// Whether it is a polygon that is folded.
+    #[inline]
+    pub(crate) fn is_folded(&self) -> bool {
+        self.corners[0] == self.corners[1]
+    }
+}
+
 impl ListVertex {
     /// A vertex whose attributes are still to be set.
     pub(crate) fn new(at: &ScreenVertex) -> Self {
@@ -111,6 +119,39 @@ impl ListView<'_> {
         }
     }
 
+    /// The corners of a polygon that is folded.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn polygon<'p>(
+        &self,
+        folded: &ListTriangle,
+        inputs: Inputs,
+        mesh: &[Vertex],
+        to: &'p mut [ScreenVertex],
+    ) -> &'p [ScreenVertex] {
+        let mut count = 0;
+        for slot in self.slots(folded) {
+            self.fetch_to(slot, inputs, mesh, to, count);
+            count += 1;
+        }
+        to.get(..count).unwrap_or_default()
+    }
+
+    #[inline(never)]
+    fn fetch_to(&self, slot: u16, inputs: Inputs, mesh: &[Vertex], to: &mut [ScreenVertex], i: usize) {
+        if let Some(to) = to.get_mut(i) {
+            self.fetch(slot, inputs, mesh, to);
+        }
+    }
+
+    /// Slots of the corners of a polygon that is folded.
+    fn slots(&self, folded: &ListTriangle) -> impl Iterator<Item = u16> {
+        let [first, _, last] = folded.corners;
+        let is_corner =
+            |slot: &u16| self.vertices.get(usize::from(*slot)).is_some_and(|vertex| vertex.x != CUT_OFF);
+        (first..=last).filter(is_corner)
+    }
+
     /// Writes the vertex in a slot to `to`, as [`ListView::corners`].
     #[inline]
     fn fetch(&self, slot: u16, inputs: Inputs, mesh: &[Vertex], to: &mut ScreenVertex) {
@@ -148,6 +189,15 @@ impl ListView<'_> {
     pub(crate) fn bounds(&self, triangle: &ListTriangle) -> [[i32; 2]; 2] {
         let at = |slot: u16| self.vertices.get(usize::from(slot)).map_or([0; 2], ListVertex::position);
         let [a, b, c] = triangle.corners.map(at);
-        [0, 1].map(|axis| Window::centers(a[axis], b[axis], c[axis]))
+        let centers = [0, 1].map(|axis| Window::centers(a[axis], b[axis], c[axis]));
+        if !triangle.is_folded() {
+            return centers;
+        }
+        self.slots(triangle).map(at).fold(centers, |all, at| {
+            [0, 1].map(|axis| {
+                let [start, end] = Window::centers(at[axis], at[axis], at[axis]);
+                [all[axis][0].min(start), all[axis][1].max(end)]
+            })
+        })
     }
 }

@@ -7,6 +7,7 @@ mod entries;
 mod extent;
 mod index;
 mod record;
+mod style;
 
 pub use capacity::CapacityError;
 pub use changes::{Changes, Flushed};

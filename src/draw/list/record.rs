@@ -9,14 +9,13 @@
 //! After the last triangle the slots of the others are freed.
 
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
-use crate::frame::{PixelFormat, Window};
-use crate::geometry::{
-    Clip, Coloring, Count, Cull, Inputs, MOST_CORNERS, ScreenVertex, ToClip, area, dim, in_order,
-};
+use super::style::Style;
+use crate::frame::Window;
+use crate::geometry::{Clip, Count, Inputs, MOST_CORNERS, ScreenVertex, ToClip, area, dim, in_order};
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
+use crate::raster::rows_of_folded;
 use crate::scene::{Mesh, Projection};
-use crate::shade::Shader;
 use heapless::VecView;
 
 /// Which capacity is full.
@@ -24,26 +23,6 @@ use heapless::VecView;
 pub(crate) enum Full {
     Vertices,
     Triangles,
-}
-
-/// What a shader wants of the vertices and triangles.
-pub(crate) struct Style<'p> {
-    cull: Cull,
-    pub(crate) inputs: Inputs,
-    coloring: Coloring<'p>,
-}
-
-impl<'p> Style<'p> {
-    /// Not inlined, so that its stack frame is gone while a mesh is recorded.
-    #[inline(never)]
-    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, camera: &Pose, pose: &'p Pose) -> Self {
-        let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
-        Self { cull, inputs: shader.inputs(), coloring: shader.coloring(pose) }
-    }
-
-    fn has_color(&self) -> bool {
-        matches!(self.inputs, Inputs::Color | Inputs::UvColor)
-    }
 }
 
 /// Adds one mesh to a list.
@@ -269,9 +248,13 @@ impl Recorder<'_, '_> {
         stats.count(|stats| &mut stats.clipped);
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        let count = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
+        let (count, is_folded) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
+        }
+        let seen = polygon.get(..count).unwrap_or_default();
+        if is_folded {
+            return self.add_folded(seen, stats);
         }
         let mut slots = [None; MOST_CORNERS];
         for piece in 1..count.saturating_sub(1).min(MOST_CORNERS - 1) {
@@ -297,6 +280,27 @@ impl Recorder<'_, '_> {
             self.add([a, b, c], area, rows)?;
         }
         Ok(())
+    }
+
+    /// A polygon that is folded: all its corners, one after the other.
+    #[cold]
+    #[inline(never)]
+    fn add_folded(&mut self, polygon: &[ScreenVertex], stats: &mut impl Count) -> Result<(), Full> {
+        let rows = rows_of_folded(polygon, &self.window);
+        if rows.is_empty() {
+            stats.count(|stats| &mut stats.out_of_sight);
+            return Ok(());
+        }
+        stats.count(|stats| &mut stats.drawn);
+        let mut ends = [None, None];
+        for corner in polygon {
+            let slot = self.push(corner)?;
+            ends = [ends[0].or(Some(slot)), Some(slot)];
+        }
+        let [first, last] = ends.map(Option::unwrap_or_default);
+        let rows = [rows.start, rows.end - 1].map(|row| (row >> ROWS_LOG2) as u8);
+        let corners = [first, first, last];
+        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
     }
 
     /// Appends a corner that clipping or flat shading made. Returns its slot, which [`Recorder::move_together`] will shift down.
