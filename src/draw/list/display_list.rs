@@ -4,11 +4,11 @@
 //! - Out: bands of a few rows, with the bytes of a whole frame.
 //! - Assumes: the bands of one frame share its width.
 
-use super::capacity::CapacityError;
+use super::capacity::{CapacityError, Full};
 use super::entries::{ListTriangle, ListVertex, ListView, MOST_SLOTS};
 use super::extent::Extent;
 use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
-use super::record::{Full, record};
+use super::record::record;
 use super::style::Style;
 use crate::draw::canvas::Canvas;
 use crate::draw::canvas::sealed::Sealed;

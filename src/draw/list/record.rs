@@ -8,6 +8,7 @@
 //! transformed, each into a *slot*, a place in the list's array of vertices. Those that turn out to be used are kept and lit.
 //! After the last triangle the slots of the others are freed.
 
+use super::capacity::Full;
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::style::Style;
 use crate::frame::Window;
@@ -17,13 +18,6 @@ use crate::num::{I16F16, U1F31, U8F8};
 use crate::raster::rows_of_folded;
 use crate::scene::{Mesh, Projection};
 use heapless::VecView;
-
-/// Which capacity is full.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Full {
-    Vertices,
-    Triangles,
-}
 
 /// Adds one mesh to a list.
 ///
