@@ -12,7 +12,7 @@
 //!
 //! | type | field | range |
 //! |---|---|---|
-//! | i32 | x, y in 1/16 pixel, y down, pixel centres at +8/16 | −16384 … 16368, the guard band |
+//! | i32 | x, y in 1/16 pixel, y down, pixel centres at +8/16 | −16376 … 16376, the guard band |
 //! | f32 | w | finite, above 0; the largest of the file at most 65536 times the smallest |
 //! | f32 | u, v in texels | multiples of 1/16 within ±2000 |
 //! | f32 | r, g, b | carried for other readers, ignored here |
@@ -35,7 +35,8 @@
 //! - the matrix may miss a rotation times a scale by 0.0001 of that scale in any element of its product with its
 //!   transpose, and is rounded to 2⁻¹⁴ for each element of the rotation;
 //! - lengths of eye space (the scale, the translation, near) are multiplied by the largest power of two that leaves them
-//!   within the crate's range, which the picture does not show, then rounded: the scale to 2⁻²², the others to 2⁻¹⁶;
+//!   within the crate's range, which the picture does not show, then rounded: the scale to 2⁻²², the others to 2⁻¹⁶; a near
+//!   plane nearer than 2⁻⁸ then, the crate's limit, is drawn there, which the message says;
 //! - the focal length is rounded to 2⁻¹⁶, u and v to 1/16.
 //!
 //! # Output

@@ -466,8 +466,8 @@ fn the_quality_is_the_default_one_if_none_is_named() {
 fn the_ends_of_every_range_are_taken() {
     let mut case = small();
     case.triangles[0][0] =
-        Vertex { x: -16384, y: 16368, w: 65536.0, u: 2000.0, v: -2000.0, color: [f32::NAN; 3] };
-    case.triangles[0][1] = Vertex { x: 16368, y: -16384, w: 1.0, u: -0.0, v: 1.0 / 16.0, color: [0.0; 3] };
+        Vertex { x: -16376, y: 16376, w: 65536.0, u: 2000.0, v: -2000.0, color: [f32::NAN; 3] };
+    case.triangles[0][1] = Vertex { x: 16376, y: -16376, w: 1.0, u: -0.0, v: 1.0 / 16.0, color: [0.0; 3] };
     for vertex in case.triangles.as_flattened_mut() {
         vertex.w = vertex.w.clamp(1.0, 65536.0);
     }
@@ -899,7 +899,7 @@ fn every_malformed_field_is_named() {
     let field = |number: usize| 24 + 3 * 96 + 32 + 4 * number;
     let place = "triangle 3, vertex 1";
     for (number, name) in [(0, "x is"), (1, "y is")] {
-        for at in [-16385, 16369, i32::MIN, i32::MAX] {
+        for at in [-16377, 16377, i32::MIN, i32::MAX] {
             refused(&with(field(number), at.to_le_bytes()), &[place, name, &at.to_string(), "guard band"]);
         }
     }
@@ -957,7 +957,7 @@ fn well_formed(bytes: &[u8]) -> bool {
         && bytes.len() == 24 + 96 * count;
     let vertices = || (24..bytes.len()).step_by(32);
     let texels = |at: usize| float(at).abs() <= 2000.0 && float(at) * 16.0 % 1.0 == 0.0;
-    let place = |at: usize| (-16384..=16368).contains(&i32::from_le_bytes(word(at)));
+    let place = |at: usize| (-16376..=16376).contains(&i32::from_le_bytes(word(at)));
     let w = || vertices().map(|at| float(at + 8));
     header
         && vertices().all(|at| place(at) && place(at + 4) && texels(at + 12) && texels(at + 16))
