@@ -95,12 +95,6 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
     ((wide(a, b) + (1 << (S - 1))) >> S) as i32
 }
 
-/// The upper 32 bits of `a · b`.
-#[inline]
-pub(crate) const fn mul_high(a: i32, b: i32) -> i32 {
-    (wide(a, b) >> 32) as i32
-}
-
 /// `a · b / 2³⁰`, rounded down, for an `a` within ±2⁵⁹ if the result is.
 ///
 /// Not inlined on Armv6-M: of three wide multiplies there is one copy.

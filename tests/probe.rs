@@ -353,7 +353,7 @@ fn compare(case: &Case, quality: &str, truth: &mut Truth, worst: &mut Worst) {
                 let error = value - exact.affine[attribute];
                 (error - 256.0 * (error / 256.0).round()).abs()
             } else {
-                let (low, high) = truth.triangles[index].sampled(attribute);
+                let (low, high) = truth.triangles[index].range(attribute);
                 // Which of two turns is nearer may hang on the rounding of q, where the step is over 256 texels.
                 if exact.change[attribute] < 256.0 {
                     let within = f64::from(low) / UNIT..=f64::from(high) / UNIT;

@@ -5,7 +5,7 @@
 //! - Assumes: the vertices lie in the guard band.
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
-use crate::geometry::{Count, Cull, Inputs, Oriented, RangeError, ScreenVertex, area, position};
+use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
 use crate::raster::{Needs, Packing, Rows, Runs, Span, Straight, TriangleSetup, visible};
 use crate::shade::{Patch, Quality, Run, Shader};
 
@@ -42,15 +42,13 @@ pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     [is_orthographic, is_gray]: [bool; 2],
 ) -> Needs {
     let texture_scale = shader.texture_scale().min(8);
-    let packing = Packing::new(shader.packed_log2(), texture_scale);
     let inputs = shader.inputs();
     Needs {
         inputs,
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
         texture_scale,
-        inset: if matches!(inputs, Inputs::Uv | Inputs::UvColor) { packing.inset() } else { 0 },
-        packing,
+        packing: Packing::new(shader.packed_log2(), texture_scale, inputs),
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,
     }

@@ -54,6 +54,12 @@ impl Attribute {
         rise
     }
 
+    /// Makes the range of a texture coordinate end below its greatest value. One that is the same at all corners stays what it is.
+    #[inline]
+    pub(crate) fn open_end(&mut self) {
+        self.range = self.range.saturating_sub(1);
+    }
+
     /// Makes the range of a straight triangle's texture coordinate end an `inset` inside on both sides.
     #[inline]
     pub(crate) fn keep_straight_inside(&mut self, inset: u32) {
@@ -80,13 +86,13 @@ impl Attribute {
     }
 
     /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
-    /// corners stays what it is. If it may be packed, which takes some inset, it is in the middle of its texel.
+    /// corners stays what it is. If it may be packed, which takes an inset of more than 2, it is in the middle of its texel.
     #[cold]
     #[inline(never)]
     fn keep_amid(&mut self, inset: u32) {
         let texel = 0x10000 >> self.scale_log2;
         self.least += (self.range >> 1) as i32;
-        if inset > 1 {
+        if inset > 2 {
             self.least = (self.least & -texel) + texel / 2;
         }
         (self.low, self.range) = (0, 0);

@@ -10,14 +10,14 @@ use crate::num::wide;
 
 impl TriangleSetup {
     /// Makes the range of a small triangle's u and v end a little inside on both sides, where they may not be exactly straight.
-    #[inline(never)]
+    #[inline]
     pub(super) fn keep_small_inside(&mut self, needs: &Needs) {
         let [u, v, ..] = &mut self.attributes;
-        if u.plane.steps[0].unsigned_abs() >> (needs.packing.turn_log2 - 2) != 0 {
+        if needs.packing.is_steep(u.plane.steps[0]) {
             return self.keep_steep_inside(needs);
         }
-        u.keep_straight_inside(needs.inset);
-        v.keep_straight_inside(needs.inset);
+        u.open_end();
+        v.keep_straight_inside(needs.packing.inset.into());
     }
 
     /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels: so often that v had better not be stepped.
@@ -26,8 +26,8 @@ impl TriangleSetup {
     fn keep_steep_inside(&mut self, needs: &Needs) {
         self.step_singly();
         let [u, v, ..] = &mut self.attributes;
-        u.keep_inside(2 * needs.inset, true);
-        v.keep_inside(2 * needs.inset, true);
+        u.open_end();
+        v.keep_inside(2 * u32::from(needs.packing.inset), true);
     }
 
     /// Makes rows of a small triangle begin anew at every pixel.
@@ -45,26 +45,29 @@ impl TriangleSetup {
             return self.lean_large(triangle, needs, fraction_bits);
         }
         let [u, v, ..] = &mut self.attributes;
-        for attribute in [u, v] {
-            attribute.keep_inside(2 * needs.inset, self.straight);
-        }
+        u.open_end();
+        v.keep_inside(2 * u32::from(needs.packing.inset), self.straight);
     }
 
     /// As [`TriangleSetup::lean`], of one that is not small.
     ///
-    /// A plane is off by half a unit at every column and row from its middle on, by three units of a slope from corner 0 on, and by 20
-    /// where it begins.
+    /// A plane is off by half a unit at every column and row from its middle on, by one and a half unit of a slope from corner 0 on, and
+    /// by 20 where it begins.
     #[cold]
-    fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: i32) {
+    fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, bits: i32) {
         let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
         if self.sliver {
-            return self.lean(triangle, needs, 0, 24 + (width >> 1));
+            self.lean(triangle, needs, 0, 24 + (width >> 1));
+        } else if bits < 3 {
+            // Steps of few fraction bits, of a triangle that is not much larger than the screen.
+            self.lean(triangle, needs, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
+        } else {
+            let all = (0..2).fold(2, |all, axis| {
+                let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+                all + a.max(b).max(c) - a.min(b).min(c)
+            });
+            self.lean(triangle, needs, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
         }
-        let bits = fraction_bits;
-        let slope_error =
-            |count: i32| 1 + if bits < 0 { (3 * count) << (-bits & 31) } else { (3 * count) >> bits };
-        let slack = if fraction_bits < 3 { 2 + slope_error(1) as u32 } else { 0 };
-        self.lean(triangle, needs, slack, 20 + ((width + height) >> 2) + slope_error(4096));
     }
 
     /// Makes exactly straight texture coordinates lean in the direction of the change that decides of which texel a whole coordinate
@@ -81,7 +84,7 @@ impl TriangleSetup {
     /// A step that may be off by `slack` is [taken for](Plane::snap) the one of a sprite.
     #[cold]
     #[inline(never)]
-    pub(crate) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
+    pub(super) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
         self.leans = true;
         let [u, v] = [|vertex: &ScreenVertex| vertex.u, |vertex: &ScreenVertex| vertex.v]
             .map(|coordinate| triangle.vertices.map(|vertex| coordinate(vertex).to_bits()));
@@ -102,13 +105,16 @@ impl TriangleSetup {
         let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
         let attribute = &mut self.attributes[i];
         if direction == 0 {
-            attribute.keep_inside(needs.inset, true);
+            // The middle of its texel, if carries can move it.
+            if i > 0 {
+                attribute.keep_inside(needs.packing.inset.into(), true);
+            }
             return 0;
         }
         let mut plane = attribute.plane;
         let mut behind = most;
         if !self.sliver {
-            plane.snap(&self.corners[0], slack);
+            plane.snap(&self.corners[0], slack, self.is_small);
             let mut worst = 0;
             for (corner, value) in self.corners.iter().zip(at) {
                 worst = worst.min(direction * plane.error_at(corner, value - attribute.least));
@@ -119,24 +125,26 @@ impl TriangleSetup {
         let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
         let step = self.at(&plane, first, y).1.unsigned_abs();
         let [first, last] = self.extent(0);
-        // What is not small is drawn in shorter runs, of a large texture.
-        let steps = if !self.is_small && packing.steps == 15 { 7 } else { packing.steps };
-        let steps = steps.min((last - first) as u32);
-        let room = (carries * packing.unit) as i32;
-        behind += room + (packing.unit + steps * (step & (packing.unit - 1))) as i32;
+        let unit = u32::from(packing.unit);
+        // Of a large texture, what is not small is drawn in shorter runs.
+        let longest = if packing.steps == 15 && !self.is_small { 7 } else { u32::from(packing.steps) };
+        let steps = longest.min((last - first) as u32);
+        let room = (carries * unit) as i32;
+        behind += room + (unit + steps * (step & (unit - 1))) as i32;
         plane.origin = plane.origin.wrapping_add_signed(direction * behind);
         let texel = 0x10000 >> needs.texture_scale;
-        let (mut least, mut greatest) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]) - 1);
+        let attribute = &mut self.attributes[i];
+        let mut least = attribute.least;
+        let mut greatest = least.wrapping_add_unsigned(attribute.range) - 1;
         if least & (texel - 1) < room {
             least += room;
         }
         if greatest & (texel - 1) >= texel - room {
             greatest -= room;
         }
-        let attribute = &mut self.attributes[i];
         attribute.plane = plane;
         attribute.limit(least, greatest.max(least));
-        if step >> (packing.turn_log2 - 2) != 0 {
+        if packing.is_steep(step as i32) {
             self.step_singly();
         }
         packing.carries(step, steps)
@@ -145,7 +153,7 @@ impl TriangleSetup {
 
 /// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
 /// any point, and infinitely less below that: as in the top-left rule. Exact.
-pub(crate) fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
+fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
     match sign_of_sum(right, rise) {
         0 => sign_of_sum(down, rise),
         sign => sign,

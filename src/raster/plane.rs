@@ -13,14 +13,16 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// Moves each step to the nearest multiple of 2⁻¹² if that is within its error, or 2⁻¹⁶ of it more; around a corner.
+    /// Moves each step to the nearest multiple of 2⁻¹² if that is within its error, of a small triangle 2⁻¹⁶ of it more; around a
+    /// corner.
     ///
     /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
     /// coordinates at every pixel.
-    pub(super) fn snap(&mut self, corner: &[i32; 2], error: u32) {
+    pub(super) fn snap(&mut self, corner: &[i32; 2], error: u32, is_small: bool) {
         for (step, at) in self.steps.iter_mut().zip(corner) {
             let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
-            if error > 0 && change.unsigned_abs() <= error + (step.unsigned_abs() >> 16) {
+            let error = error + if is_small { step.unsigned_abs() >> 16 } else { 0 };
+            if change.unsigned_abs() <= error {
                 *step = step.wrapping_add(change);
                 self.origin = self.origin.wrapping_sub((at >> 4).wrapping_mul(change) as u32);
             }

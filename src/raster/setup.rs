@@ -29,9 +29,17 @@
 //!
 //! Each is kept as a plane: a value at pixel (0, 0) and one rounded step a column and a row, **in wrapping
 //! integers**. What the plane says far outside the triangle wraps, and wraps back: inside, where the true value fits 32
-//! bits, only the rounding of the steps remains, k ≤ (n + m)/2 + 16 after n columns and m rows from the nearest corner (or
-//! from where the screen begins, if it lies outside). With n, m ≤ 1023 and d ≤ 2047 the sum of all is 0.024 px in the very
-//! worst case for any ratio of w, and measured a tenth of it.
+//! bits, only the rounding of the steps remains, k ≤ (n + m)/2 + 16 after n columns and m rows from the middle of what is
+//! within the screen. With n, m ≤ 512 and d ≤ 2047 the sum of all is 0.012 px in the very worst case for any ratio of w.
+//!
+//! # Which texel a whole coordinate is
+//!
+//! Where q is the same at all corners, or does not count, texture coordinates are straight: then a coordinate that is whole at a
+//! pixel's centre is sampled infinitesimally right of that, and infinitely less below, as coverage is by the top-left rule. So
+//! `TriangleSetup::lean` moves its plane in the direction in which it changes there, once, by as much as all that follows may be
+//! behind. And its range ends below the greatest value at the corners: so it does for all triangles.
+//!
+//! # Slivers
 //!
 //! In a sliver the steps are large and nearly cancel, and where distances differ more than 4096-fold q has too few bits at
 //! the far corner for [`Exact`](crate::Exact). Then a plane holds the values at the corners instead, and is
@@ -44,7 +52,7 @@ use super::straight::{Bend, Straight};
 use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
 use crate::geometry::{Inputs, Oriented, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_high, shift_round, wide};
+use crate::num::{mul_round, shift_round, wide};
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
 struct Slopes {
@@ -57,16 +65,6 @@ struct Slopes {
     to_center: [i32; 2],
     /// From that pixel to the middle of what is within the screen.
     to_middle: [i32; 2],
-}
-
-impl Slopes {
-    /// By how much a value that rises so from corner 0 to 1 and 2 changes over one column or row, in units of 2^−`fraction_bits`,
-    /// rounded down: up to 3 too little.
-    #[inline]
-    fn slope(&self, axis: usize, rise: [i32; 2]) -> i32 {
-        let [b, c] = self.of_weights[axis];
-        mul_high(rise[0], b).wrapping_add(mul_high(rise[1], c))
-    }
 }
 
 impl TriangleSetup {
@@ -85,8 +83,6 @@ impl TriangleSetup {
         }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
-        } else if needs.inset > 0 && !self.leans {
-            self.keep_small_inside(needs);
         }
     }
 
@@ -129,12 +125,15 @@ impl TriangleSetup {
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-        if needs.inset > 0 {
+        if needs.packing.inset > 0 {
             self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
         }
     }
 
     /// Finds out whether it is a sliver, too.
+    ///
+    /// Not inlined: what it takes is not on the stack while planes are set.
+    #[inline(never)]
     fn slopes(&mut self, area: u32) -> Slopes {
         let (edges, a) = (edges(&self.corners), self.corners[0]);
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
@@ -142,8 +141,8 @@ impl TriangleSetup {
         // The largest difference to 30 bits, times 1/area.
         let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
         let shift = largest.leading_zeros() - 2;
-        // Steps must fit 32 bits: at least a pixel wide and high. And their errors, three units of 2^−`fraction_bits` a
-        // pixel, must not exceed 512 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
+        // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of 2^−`fraction_bits` a
+        // pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
         self.sliver = height.max(width) * 16 > area || 2 * shift < 23 + self.area.zeros;
         let pixel = a.map(|at| at >> 4);
         Slopes {
@@ -167,7 +166,8 @@ impl TriangleSetup {
         }
         let mut plane = Plane { origin, steps: [0; 2] };
         for axis in 0..2 {
-            let slope = slopes.slope(axis, rise);
+            let [b, c] = slopes.of_weights[axis];
+            let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
             let bits = slopes.fraction_bits;
             let (step, rest) = if bits > 0 {
                 let step = ((slope >> (bits - 1)) + 1) >> 1;

@@ -121,7 +121,7 @@ impl TriangleSetup {
         if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
             return false;
         }
-        match needs.straight {
+        let are_set = match needs.straight {
             Straight::Below(limit)
                 if needs.inputs != Inputs::None
                     && most != least
@@ -131,15 +131,17 @@ impl TriangleSetup {
             }
             _ => {
                 self.straight = true;
-                if !self.set_linear(triangle, needs, &slopes) {
-                    return false;
-                }
-                if needs.is_exactly_straight(least, most) && needs.inset > 0 {
-                    self.lean(triangle, needs, 2, i32::MAX);
-                }
-                true
+                self.set_linear(triangle, needs, &slopes)
+            }
+        };
+        if are_set && needs.packing.inset > 0 {
+            if needs.is_exactly_straight(least, most) {
+                self.lean(triangle, needs, 2, i32::MAX);
+            } else {
+                self.keep_small_inside(needs);
             }
         }
+        are_set
     }
 
     /// Sets attributes that may bend: false, and nothing of use done, where they do too much.

@@ -53,10 +53,6 @@ pub(crate) struct Needs {
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(crate) texture_scale: u32,
     pub(crate) packing: Packing,
-    /// How far from the ends of their range u and v stay if they may not be [exactly straight](TriangleSetup::lean), I16F16: as far as
-    /// [carries](Packing) can take v in a small triangle, which is half as far as elsewhere, and 1 at least. 0 if they are not among
-    /// the inputs.
-    pub(crate) inset: u32,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.

@@ -153,8 +153,8 @@ pub trait Pixels<W, Q>: Sealed + Sized {
     fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
 
     /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
-    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of more than five
-    /// attributes nothing is filled.
+    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners, and u and v are less than the
+    /// greatest value there, unless they are the same at all three. Of more than five attributes nothing is filled.
     #[inline]
     fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
         self.fill(&Each::new(color));
