@@ -76,12 +76,13 @@ impl Attribute {
     /// Likewise, of any triangle.
     #[inline(never)]
     pub(crate) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
-        let low = self.low;
-        let origin = self.plane.origin;
+        let (low, origin, has_room) = (self.low, self.plane.origin, self.range >= 2 * inset);
         self.keep_straight_inside(inset);
-        self.low = low.wrapping_add_unsigned(inset);
-        if !is_straight {
-            self.plane.origin = origin;
+        if has_room {
+            self.low = low.wrapping_add_unsigned(inset);
+            if !is_straight {
+                self.plane.origin = origin;
+            }
         }
     }
 

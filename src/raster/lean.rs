@@ -114,12 +114,15 @@ impl TriangleSetup {
         let mut plane = attribute.plane;
         let mut behind = most;
         if !self.sliver {
-            plane.snap(&self.corners[0], slack, self.is_small);
-            let mut worst = 0;
-            for (corner, value) in self.corners.iter().zip(at) {
-                worst = worst.min(direction * plane.error_at(corner, value - attribute.least));
+            let mut snapped = plane;
+            snapped.snap(&self.corners[0], slack, self.is_small);
+            let [mut errors, by_snapped] =
+                [plane, snapped].map(|plane| plane.errors(&self.corners, at, attribute.least));
+            // Whichever is off by less from one corner to another.
+            if by_snapped[1] - by_snapped[0] <= errors[1] - errors[0] {
+                (plane, errors) = (snapped, by_snapped);
             }
-            behind = behind.min(1 - (worst >> 4));
+            behind = behind.min(1 + (if direction > 0 { -errors[0] } else { errors[1] } >> 4));
         }
         let packing = &needs.packing;
         let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));

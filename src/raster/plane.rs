@@ -29,11 +29,16 @@ impl Plane {
         }
     }
 
-    /// By how much what it says at a corner (1/16 px) is above the value there, in 1/16.
+    /// By how much what it says at the corners (1/16 px), above `least`, is above the values there, in 1/16: 0 or less, and 0 or more.
     #[inline(never)]
-    pub(super) fn error_at(&self, corner: &[i32; 2], value: i32) -> i32 {
+    pub(super) fn errors(&self, corners: &[[i32; 2]; 3], values: &[i32; 3], least: i32) -> [i32; 2] {
         let [right, down] = self.steps;
-        let way = right.wrapping_mul(corner[0] - 8).wrapping_add(down.wrapping_mul(corner[1] - 8));
-        ((self.origin.wrapping_sub(value as u32) << 4) as i32).wrapping_add(way)
+        let mut errors = [0; 2];
+        for ([x, y], value) in corners.iter().zip(values) {
+            let way = right.wrapping_mul(x - 8).wrapping_add(down.wrapping_mul(y - 8));
+            let error = ((self.origin.wrapping_sub((value - least) as u32) << 4) as i32).wrapping_add(way);
+            errors = [errors[0].min(error), errors[1].max(error)];
+        }
+        errors
     }
 }
