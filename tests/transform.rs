@@ -608,3 +608,24 @@ fn one_byte_indices_and_parts_draw_the_same_and_a_texture_scale_multiplies_in_30
         },
     );
 }
+
+#[test]
+fn a_mesh_at_the_worlds_end_is_drawn_where_it_reaches_beyond() {
+    // 32 700 away and 800 deep: its back is further than any number of the world.
+    let camera = Camera::focal(2000.0, SCREEN);
+    let pose = Pose::IDENTITY.scaled(U10F22::from_num(400)).at(world([0.0, 0.0, -32_700.0]));
+    let eye = Eye { camera, orthographic: false, corner: [0; 2] };
+    let vertices = [Vertex::new(-7.0, -7.0, -7.0), Vertex::new(7.0, -7.0, -7.0), Vertex::new(0.0, 7.0, -7.0)];
+    let mut stats = Stats::default();
+    let drawn = draw(&eye, &pose, &Mesh::new(&vertices, &[[0, 1, 2]]), Cull::None, &mut stats);
+    // Twice the area: base and height are both 14 · 400 units at a distance of 32 700 + 2800.
+    let side = 2000.0 * 14.0 * 400.0 / 35_500.0;
+    let seen = drawn.iter().filter(|(_, _, met)| met.times > 0).count();
+    let inside = drawn.iter().filter(|((x, y), ..)| {
+        let (across, down) = (f64::from(*x) + 0.5 - 80.0, f64::from(*y) + 0.5 - 60.0);
+        let share = (down + side / 2.0) / side;
+        (0.0..1.0).contains(&share) && across.abs() < side / 2.0 * share
+    });
+    let inside = inside.count();
+    assert!(inside > 5000 && seen.abs_diff(inside) < 60, "{seen} of {inside} pixels: {stats:?}");
+}

@@ -114,8 +114,11 @@ impl Clip {
     }
 
     /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond
-    /// all that there is.
+    /// all that there is. A plane at the format's end is none: a mesh that stands there reaches further.
     pub(super) fn distance_of(to_clip: &ToClip, plane: I16F16) -> i64 {
+        if plane == I16F16::MAX {
+            return 1 << 46;
+        }
         (i64::from(plane.to_bits()) << (to_clip.unit_bits() + FINE - 16)).min(1 << 46)
     }
 
