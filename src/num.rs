@@ -87,12 +87,6 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
     ((wide(a, b) + (1 << (S - 1))) >> S) as i32
 }
 
-/// The upper 32 bits of `a · b`.
-#[inline]
-pub(crate) const fn mul_high(a: i32, b: i32) -> i32 {
-    (wide(a, b) >> 32) as i32
-}
-
 /// The upper 32 bits of `a · b` for a `b` of 0 … 2³¹, or up to 2 less: three short products on Armv6-M.
 #[inline]
 pub(crate) const fn mul_high_short(a: i32, b: u32) -> i32 {

@@ -104,7 +104,7 @@ fn measure<Q: Quality>(case: &Case, promise: Promise) -> Result<Worst, String> {
         }
         for (attribute, reads) in reads(*inputs).into_iter().enumerate() {
             let value = drawn.attributes[attribute];
-            let (low, high) = if reads { triangle.range(attribute) } else { (0, 0) };
+            let (low, high) = if reads { triangle.sampled(attribute) } else { (0, 0) };
             if !(low..=high).contains(&value) {
                 return Err(format!(
                     "attribute {attribute} at {x}, {y}: {value} is not within {low} … {high}"

@@ -13,8 +13,8 @@ use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::pixelcolor::raw::RawU16;
 use fixel::{
-    Cull, Inputs, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Texture, TextureError, Varying,
-    Wrap,
+    Cull, Inputs, Lights, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Texture, TextureError,
+    Varying, Wrap,
 };
 use proptest::prelude::*;
 use reference::{Corner, Sample, Triangle, UNIT};
@@ -22,6 +22,15 @@ use reference::{Corner, Sample, Triangle, UNIT};
 /// log₂ of width and height.
 const SIZES: [(u32, u32); 10] =
     [(0, 0), (0, 10), (10, 0), (1, 3), (3, 1), (4, 4), (5, 8), (8, 8), (9, 2), (10, 10)];
+
+/// How far ahead of itself a straight coordinate may be seen, in units of 2⁻¹⁶ before it is multiplied by 2^`scale_log2`: the
+/// stated error of the paths. Packed coordinates leave 1/8 texel at the most, a plane 1/24 on the largest screen, and 1/256 of
+/// what it changes over a pixel.
+fn ahead(triangle: &Triangle, axis: usize, scale_log2: u32) -> i128 {
+    let straight = |x, y| triangle.at(x, y).straight(axis).value();
+    let change = (straight(1, 0) - straight(0, 0)).abs() + (straight(0, 1) - straight(0, 0)).abs();
+    (8192 >> scale_log2) + 2731 + (change / 256.0) as i128
+}
 
 /// A texture whose texels say in which column they are, and one for the rows.
 struct Chart {
@@ -49,7 +58,7 @@ impl Chart {
 /// From where to where an attribute may be, in units of 2⁻¹⁶.
 fn tolerated(triangle: &Triangle, exact: &Sample<'_>, attribute: usize, bound: f64) -> (f64, f64) {
     let off = bound * exact.change(attribute).step.max(UNIT);
-    let (low, high) = triangle.range(attribute);
+    let (low, high) = triangle.sampled(attribute);
     let value = exact.attribute(attribute);
     ((value - off).max(f64::from(low)), (value + off).min(f64::from(high)))
 }
@@ -191,6 +200,293 @@ fn level_rows_of_textures_are_within_the_bound_600_cases() {
     });
 }
 
+/// Whether all texels along one axis of a straight triangle are those at its coordinates, on the right side of whole ones and
+/// never beyond the vertices' range.
+fn straight_texels<Q: Quality>(
+    strip: Strip,
+    triangle: &Triangle,
+    material: &Material<'_, Q>,
+    (axis, log2, wrap): (usize, u32, Wrap),
+    (scale_log2, ahead): (u32, i128),
+) -> Result<u32, TestCaseError> {
+    let side = 1 << log2;
+    let shows = |right: &std::ops::RangeInclusive<i128>, texel: i128| match wrap {
+        Wrap::Repeat => right.clone().take(side as usize).any(|right| right.rem_euclid(side) == texel),
+        Wrap::Clamp => {
+            (*right.start()).clamp(0, side - 1) <= texel && texel <= (*right.end()).clamp(0, side - 1)
+        }
+    };
+    let mut telling = 0;
+    for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, material)) {
+        if !drawn.written {
+            continue;
+        }
+        let texel = i128::from(drawn.attributes[0]);
+        let straight = triangle.at(x, y).straight(axis);
+        let right = straight.texels(scale_log2, ahead);
+        prop_assert!(
+            shows(&right, texel),
+            "axis {} at {}, {}: texel {} of {} ({:?}) for {} · 2^{}, which is one of {:?}",
+            axis,
+            x,
+            y,
+            texel,
+            side,
+            wrap,
+            straight.value() / UNIT,
+            scale_log2,
+            right
+        );
+        telling += u32::from(right.start() == right.end());
+    }
+    Ok(telling)
+}
+
+/// Gradients that make coordinates whole at many pixel centres, in 1/16 texels a pixel.
+fn gradient() -> impl Strategy<Value = i32> {
+    prop_oneof![
+        4 => prop::sample::select(&[0, 0, 16, -16, 32, -32, 8, -8, 1, -1, 4, 64][..]),
+        1 => -40..=40,
+        1 => -4000..=4000,
+    ]
+}
+
+/// Of a triangle: u and v that are exact at every 1/16 pixel, and whole at many centres.
+fn on_lattice(triangle: &Triangle, gradients: [[i32; 2]; 2], starts: [i32; 2]) -> Option<Triangle> {
+    let mut triangle = *triangle;
+    for corner in &mut triangle.0 {
+        for axis in 0..2 {
+            let [right, down] = gradients[axis];
+            // 1/16 texel a pixel is 2⁸ units of 2⁻¹⁶ a 1/16 pixel.
+            let value =
+                (i64::from(right) * i64::from(corner.x - 8) + i64::from(down) * i64::from(corner.y - 8)) << 8;
+            let value = value + (i64::from(starts[axis]) << 12);
+            if value.abs() > 8000 << 16 {
+                return None;
+            }
+            corner.attributes[axis] = value as i32;
+        }
+    }
+    Some(triangle)
+}
+
+/// Straight triangles with textures of all sizes, in every quality.
+fn straight_triangles(name: &str, usual: u32, lattice: bool) {
+    let charts: &'static [Chart] = Vec::leak(SIZES.map(Chart::new).into());
+    let start = || prop_oneof![Just(0), -300..=300];
+    let cases = strip().prop_flat_map(move |strip| {
+        let plane = ([[gradient(), gradient()], [gradient(), gradient()]], [start(), start()]);
+        // The nearest possible, and far away.
+        let q = prop::sample::select(&[(1_u32 << 31) - 1, 1 << 30, 1 << 20, 7][..]);
+        let texture = (0..SIZES.len(), prop::bool::weighted(0.3), prop_oneof![2 => Just(0), 1 => 0..=8_u32]);
+        (Just(strip), triangle(strip), plane, (q, 0..9_u32), texture)
+    });
+    let telling = Cell::new(0_u64);
+    let lights = Lights::new([255; 3], &[]);
+    for_all(name, usual, cases, |(strip, triangle, (gradients, starts), (q, stretch), texture)| {
+        let (chart, clamp, scale_log2) = texture;
+        // Beyond ±32768 texels coordinates begin anew, which no texture that repeats shows.
+        let scale_log2 = if clamp { 0 } else { scale_log2 };
+        let wrap = if clamp { Wrap::Clamp } else { Wrap::Repeat };
+        let mut triangle = if !lattice {
+            stretched(triangle, stretch)
+        } else if let Some(triangle) = on_lattice(&triangle, gradients, starts) {
+            triangle
+        } else {
+            return Ok(());
+        };
+        for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
+            let material = Material::textured(&texture.wrap(wrap)).texture_scale(scale_log2 as u8);
+            let by = (axis, log2, wrap);
+            let error = (scale_log2, ahead(&triangle, axis, scale_log2));
+            // Full light, grey or not, leaves texels as they are.
+            for corner in &mut triangle.0 {
+                let blue = if stretch & 1 == 0 { 255 << 16 } else { 0xff_80_00 };
+                corner.attributes[2..].copy_from_slice(&[255 << 16, 255 << 16, blue]);
+            }
+            let lit = material.lit(&lights);
+            let mut all = straight_texels(strip, &triangle, &material.affine(), by, error)?;
+            all += straight_texels(strip, &triangle, &lit.affine(), by, error)?;
+            for corner in &mut triangle.0 {
+                corner.q = q;
+            }
+            all += straight_texels(strip, &triangle, &material, by, error)?;
+            all += straight_texels(strip, &triangle, &lit, by, error)?;
+            all += straight_texels(strip, &triangle, &material.exact(), by, error)?;
+            all += straight_texels(strip, &triangle, &lit.exact(), by, error)?;
+            telling.set(telling.get() + u64::from(all));
+        }
+        Ok(())
+    });
+    println!("{name}: {} texels that are the only right one", telling.get());
+    assert!(telling.get() > 100 * u64::from(common::cases(usual)));
+}
+
+#[test]
+fn straight_triangles_sample_right_of_centres_and_within_their_range_4_000_cases() {
+    straight_triangles("straight texels, whole at centres", 2000, true);
+    straight_triangles("straight texels, anywhere", 2000, false);
+}
+
+/// Top left, bottom left, bottom right, top right, of a sprite between two places (1/16 px) with textures coordinates between
+/// others (2⁻¹⁶), mirrored and turned in one of 8 ways.
+fn sprite([left, top, right, bottom]: [i32; 4], [u0, v0, u1, v1]: [i32; 4], way: usize) -> [Corner; 4] {
+    let places = [[left, top], [left, bottom], [right, bottom], [right, top]];
+    let mut uv = [[u0, v0], [u0, v1], [u1, v1], [u1, v0]];
+    if way >= 4 {
+        uv.reverse();
+    }
+    uv.rotate_left(way % 4);
+    std::array::from_fn(|i| {
+        let ([x, y], [u, v]) = (places[i], uv[i]);
+        Corner { x, y, q: (1 << 31) - 1, attributes: [u, v, 255 << 16, 255 << 16, 255 << 16] }
+    })
+}
+
+/// Its two triangles, by either diagonal.
+fn halves([a, b, c, d]: [Corner; 4], other: bool) -> [Triangle; 2] {
+    if other {
+        [Triangle([b, c, d]), Triangle([b, d, a])]
+    } else {
+        [Triangle([a, b, c]), Triangle([a, c, d])]
+    }
+}
+
+/// What both show together.
+fn draw_both<Q: Quality>(strip: Strip, halves: &[Triangle; 2], material: &Material<'_, Q>) -> Vec<Drawn> {
+    let mut canvas = Canvas::new::<NoDepth>(strip);
+    for half in halves {
+        canvas.draw::<Recording, NoDepth, _>(half, Cull::None, material).expect("within range");
+    }
+    canvas.pixels
+}
+
+/// The texel that every pixel of a sprite has to show along an axis.
+fn sprite_texels(halves: &[Triangle; 2], strip: Strip, axis: usize, scale_log2: u32) -> Vec<Option<i128>> {
+    let texel = |(x, y)| {
+        let half = halves.iter().find(|half| half.covers(x, y))?;
+        Some(*half.at(x, y).straight(axis).texels(scale_log2, 0).start())
+    };
+    strip.pixels().map(texel).collect()
+}
+
+#[test]
+fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
+    let charts: &'static [Chart] =
+        Vec::leak([0, 2, 3, 5, 6, 7, 8, 9].map(|log2| Chart::new((log2, log2))).into());
+    let lights = Lights::new([255; 3], &[]);
+    // How many texels for how many pixels.
+    let ratios = prop::sample::select(&[(1, 1), (1, 1), (1, 1), (2, 1), (1, 2), (3, 1), (4, 1)][..]);
+    let place = || {
+        prop_oneof![(0..40_i32).prop_map(|px| 16 * px), (0..40_i32).prop_map(|px| 16 * px + 8), 0..640_i32]
+    };
+    let size = || prop_oneof![3 => 1..20_i32, 1 => 1..130_i32, 1 => prop::sample::select(&[1, 2, 4, 8, 16, 32, 64, 128, 256][..])];
+    let cases = (
+        ([place(), place()], [size(), size()], ratios),
+        ([-100..300_i32, -100..300_i32], 0..8_usize, any::<bool>()),
+        (
+            0..charts.len(),
+            any::<bool>(),
+            prop_oneof![3 => Just(0), 1 => 0..4_u32],
+            prop::sample::select(&[1 << 30, (1_u32 << 31) - 1][..]),
+        ),
+    );
+    let shown = Cell::new(0_usize);
+    for_all(
+        "sprites",
+        2000,
+        cases,
+        |(([x, y], [w, h], (texels, px)), (from, way, diagonal), (chart, clamp, scale_log2, q))| {
+            // Coordinates at centres are whole, or 1/16 texel away from that, of which 2^`scale_log2` times as much is seen.
+            let grid = if scale_log2 > 0 { 8 } else { px };
+            let [x, y] = [x, y].map(|at| at / grid * grid);
+            // Whole texels, on as many pixels; turned by 90° what was its width is its height.
+            let from = if clamp { [0; 2] } else { from };
+            let on_screen = if way % 2 == 0 { [w, h] } else { [h, w] };
+            let to = [x + 16 * px * on_screen[0], y + 16 * px * on_screen[1]];
+            let uv = [from[0], from[1], from[0] + texels * w, from[1] + texels * h]
+                .map(|texel| texel << (16 - scale_log2));
+            let corners = sprite([x, y, to[0], to[1]], uv, way).map(|corner| Corner { q, ..corner });
+            let halves = halves(corners, diagonal);
+            let strip = Strip::new((to[0] as u32).div_ceil(16), (to[1] as u32).div_ceil(16), 0);
+            for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
+                let texture = texture.wrap(if clamp { Wrap::Clamp } else { Wrap::Repeat });
+                let material = Material::textured(&texture).texture_scale(scale_log2 as u8);
+                let side = 1 << log2;
+                let expected: Vec<_> = sprite_texels(&halves, strip, axis, scale_log2)
+                    .into_iter()
+                    .map(|texel| {
+                        texel.map(
+                            |texel| if clamp { texel.clamp(0, side - 1) } else { texel.rem_euclid(side) },
+                        )
+                    })
+                    .collect();
+                let pictures = [
+                    draw_both(strip, &halves, &material),
+                    draw_both(strip, &halves, &material.affine()),
+                    draw_both(strip, &halves, &material.exact()),
+                    draw_both(strip, &halves, &material.lit(&lights)),
+                ];
+                for (kind, picture) in pictures.into_iter().enumerate() {
+                    for (((x, y), drawn), texel) in strip.pixels().zip(picture).zip(&expected) {
+                        let seen = drawn.written.then_some(i128::from(drawn.attributes[0]));
+                        prop_assert_eq!(seen, *texel, "axis {}, kind {}, at {}, {}", axis, kind, x, y);
+                    }
+                }
+                // 1:1, every column or row of texels is seen as often as the other side is long, whatever the rule says.
+                if (texels, px) == (1, 1) && !clamp {
+                    let mut times = vec![0; side as usize];
+                    for texel in expected.iter().flatten() {
+                        times[*texel as usize] += 1;
+                    }
+                    let (count, other) = if axis == 0 { (w, h) } else { (h, w) };
+                    let mut right = vec![0; side as usize];
+                    for texel in from[axis]..from[axis] + count {
+                        right[texel.rem_euclid(side as i32) as usize] += other;
+                    }
+                    prop_assert_eq!(times, right);
+                }
+                shown.set(shown.get() + expected.iter().flatten().count());
+            }
+            Ok(())
+        },
+    );
+    println!("sprites: {} texels seen", shown.get());
+}
+
+#[test]
+fn a_sprite_of_16_texels_by_hand() {
+    // 4 × 4 texels on 4 × 4 pixels from 264/16, 1224/16: coordinates are whole at the centres of 16 pixels.
+    let chart = Chart::new((2, 2));
+    let strip = Strip::new(24, 8, 74);
+    let halves = halves(sprite([264, 1224, 264 + 64, 1224 + 64], [0, 0, 4 << 16, 4 << 16], 0), false);
+    let [columns, rows] = chart.textures().map(|(texture, _)| {
+        let picture = draw_both(strip, &halves, &Material::textured(&texture));
+        let at = |x: u32, y: u32| picture[((76 + y - strip.row) * strip.width + 16 + x) as usize];
+        [0, 1, 2, 3].map(|y| [0, 1, 2, 3].map(|x| at(x, y).attributes[0]))
+    });
+    assert_eq!(columns, [[0, 1, 2, 3]; 4]);
+    assert_eq!(rows, [[0; 4], [1; 4], [2; 4], [3; 4]]);
+}
+
+/// Outside case: the opposite border at one pixel.
+#[test]
+fn a_wall_of_64_texels_shows_no_opposite_border() {
+    let chart = Chart::new((6, 6));
+    let corner = |x, y, u, v| Corner { x, y, q: 1 << 30, attributes: [u << 16, v << 16, 0, 0, 0] };
+    let triangle = Triangle([corner(566, 684, 0, 0), corner(706, 615, 64, 0), corner(243, 130, 64, 64)]);
+    let strip = Strip::new(60, 60, 0);
+    let mut record = Record::blank(strip);
+    record.record::<QuarterPixel>(&triangle, Cull::None, Inputs::Uv);
+    let at = (9 * strip.width + 16) as usize;
+    // 63.99936 exactly, and to the right more: so from there on, but not 64.
+    let u = f64::from(record.pixels[at].attributes[0]) / UNIT;
+    assert!((63.999_36..64.0).contains(&u), "{u}");
+    assert_eq!(triangle.at(16, 9).straight(0).texels(0, 0), 63..=63);
+    let picture = draw(strip, &triangle, &Material::textured(&chart.textures()[0].0));
+    assert_eq!(picture[at].attributes[0], 63);
+}
+
 fn gouraud<Q: Quality>(name: &str, bound: f64, material: &Material<'_, Q>) {
     let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
     for_all(name, 3000, cases, |(strip, triangle)| {
@@ -243,7 +539,7 @@ fn textured_within_range() {
     for_all("texels, Affine", 2000, cases, |(strip, triangle)| {
         for (attribute, (texture, log2)) in chart.textures().into_iter().enumerate() {
             for wrap in [Wrap::Repeat, Wrap::Clamp] {
-                let (low, high) = triangle.range(attribute);
+                let (low, high) = triangle.sampled(attribute);
                 let within = (f64::from(low), f64::from(high));
                 for drawn in draw(strip, &triangle, &Material::textured(&texture.wrap(wrap)).affine()) {
                     let texel = i64::from(drawn.attributes[0]);

@@ -158,7 +158,7 @@ fn recorded<Q: Quality>(
             Inputs::UvColor => 0..5,
         };
         for (attribute, value) in pixel.attributes.into_iter().enumerate() {
-            let (low, high) = if reads.contains(&attribute) { triangle.range(attribute) } else { (0, 0) };
+            let (low, high) = if reads.contains(&attribute) { triangle.sampled(attribute) } else { (0, 0) };
             prop_assert!(
                 (low..=high).contains(&value),
                 "attribute {} is {} at {}, {}, not {} … {}",

@@ -150,3 +150,34 @@ fn winding_does_not_matter_to_the_planes() {
     };
     assert_eq!(values(Triangle([a, b, c])), values(Triangle([a, c, b])));
 }
+
+#[test]
+fn the_side_of_a_straight_coordinate_by_hand() {
+    // u goes from 0 to 4 texels over 4 pixels to the right, v from 4 to 0 downwards; vertices on pixel centres.
+    let corner = |x: i32, y: i32| Corner {
+        x: 16 * x + 8,
+        y: 16 * y + 8,
+        q: 1 << 30,
+        attributes: [x << 16, (4 - y) << 16, 5 << 16, (4 - x) << 16, 0],
+    };
+    let triangle = Triangle([corner(0, 0), corner(4, 0), corner(0, 4)]);
+    let texel = |attribute, x, y| triangle.at(x, y).straight(attribute).texels(0, 0);
+    // Whole at every centre: u goes on to the right, v falls below the row, and so does the fourth to the right.
+    assert_eq!([0, 1, 2].map(|x| texel(0, x, 0)), [0..=0, 1..=1, 2..=2]);
+    assert_eq!([0, 1, 2].map(|y| texel(1, 0, y)), [3..=3, 2..=2, 1..=1]);
+    assert_eq!([0, 1, 2].map(|x| texel(3, x, 1)), [3..=3, 2..=2, 1..=1]);
+    // The same all over: it stays.
+    assert_eq!(texel(2, 1, 1), 5..=5);
+    // A tenth of a texel ahead changes nothing of whole ones that rise, nor of those that fall.
+    assert_eq!(triangle.at(1, 1).straight(0).texels(0, 6554), 1..=1);
+    assert_eq!(triangle.at(1, 1).straight(1).texels(0, 6554), 2..=2);
+    // A texel ahead is the next, but at the end of the range.
+    assert_eq!(triangle.at(1, 1).straight(0).texels(0, 65536), 1..=2);
+    assert_eq!(triangle.at(0, 3).straight(1).texels(0, 65536), 0..=0);
+    // Times four: u is 4 at the second pixel.
+    assert_eq!(triangle.at(1, 1).straight(0).texels(2, 0), 4..=4);
+    assert_eq!(triangle.at(1, 1).straight(1).texels(2, 0), 11..=11);
+    // As units of 2⁻¹⁶.
+    assert_eq!(triangle.at(1, 1).straight(0).values(3), 65536..=65539);
+    assert_eq!(triangle.at(1, 1).straight(1).values(3), (3 << 16) - 4..=(3 << 16) - 1);
+}

@@ -14,7 +14,8 @@ pub(super) struct Attribute {
     pub(super) bend: [i32; 3],
     /// 1 … 31.
     pub(super) shift: i32,
-    /// The range of u at the corners, I16F16: the least, how much less than u₀ that is, and how much more there may be.
+    /// What u may be, I16F16: the least, how much more than u₀ that is, and how much more than the least there may be. It is the
+    /// range at the corners, or of a texture coordinate a little less.
     pub(super) least: i32,
     pub(super) low: i32,
     pub(super) range: u32,
@@ -47,6 +48,60 @@ impl Attribute {
         self.range = high.wrapping_sub(low) as u32;
         self.scale_log2 = scale_log2;
         rise
+    }
+
+    /// Makes the range of a texture coordinate end below its greatest value. One that is the same at all corners stays what it is.
+    #[inline]
+    pub(super) fn open_end(&mut self) {
+        self.range = self.range.saturating_sub(1);
+    }
+
+    /// Makes the range of a straight triangle's texture coordinate end an `inset` inside on both sides.
+    #[inline]
+    pub(super) fn keep_straight_inside(&mut self, inset: u32) {
+        let range = self.range;
+        if range < 2 * inset {
+            self.plane = Plane::default();
+            return self.keep_amid(inset);
+        }
+        self.range = range - 2 * inset;
+        self.least = self.least.wrapping_add_unsigned(inset);
+        self.plane.origin = self.plane.origin.wrapping_sub(inset);
+    }
+
+    /// Likewise, of any triangle.
+    #[inline(never)]
+    pub(super) fn keep_inside(&mut self, inset: u32, is_straight: bool) {
+        let low = self.low;
+        let origin = self.plane.origin;
+        self.keep_straight_inside(inset);
+        self.low = low.wrapping_add_unsigned(inset);
+        if !is_straight {
+            self.plane.origin = origin;
+        }
+    }
+
+    /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
+    /// corners stays what it is. If it may be packed, which takes an inset of more than 2, it is in the middle of its texel.
+    #[cold]
+    #[inline(never)]
+    fn keep_amid(&mut self, inset: u32) {
+        let texel = 0x10000 >> self.scale_log2;
+        self.least += (self.range >> 1) as i32;
+        if inset > 2 {
+            self.least = (self.least & -texel) + texel / 2;
+        }
+        (self.low, self.range) = (0, 0);
+    }
+
+    /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.
+    #[inline]
+    pub(super) fn limit(&mut self, least: i32, greatest: i32) {
+        let more = least.wrapping_sub(self.least);
+        self.least = least;
+        self.low = self.low.wrapping_add(more);
+        self.range = greatest.wrapping_sub(least) as u32;
+        self.plane.origin = self.plane.origin.wrapping_add_signed(-more);
     }
 
     /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
@@ -104,6 +159,12 @@ impl Attribute {
         self.least.wrapping_add_unsigned(above)
     }
 
+    /// Of a straight triangle: whether its plane's value is within the range, and no more `steps` further.
+    #[inline]
+    pub(super) fn leaves(&self, (value, step): (u32, i32), steps: i32) -> bool {
+        value <= self.range && value.wrapping_add_signed(step.wrapping_mul(steps)) > self.range
+    }
+
     /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
     /// outside the corners' range, even where rounding takes the plane there.
     #[inline]
@@ -134,7 +195,7 @@ impl Attribute {
 
     #[cold]
     #[inline(never)]
-    fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+    pub(super) fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
         let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
         (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
     }

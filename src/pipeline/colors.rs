@@ -4,7 +4,9 @@
 //! are cut to their last bit towards zero, so that after 8 bent pixels or 16 straight ones a channel is off by 1/16 of 1/255 at
 //! most. A single channel keeps its 16 fraction bits.
 
-use super::fill::{Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, uv_in_units};
+use super::fill::{
+    Fill, in_pairs, longest_row_of, packed_from, packed_step, plus, shifted, turned, uv_in_units,
+};
 use super::patch::Row;
 use crate::scene::Texture;
 use crate::target::{DepthFormat, PixelFormat};
@@ -126,7 +128,7 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
         C::place(at).word::<F>()
     }
 
-    #[inline]
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
         let packed_step = C::step(step);
         let run = |pixels: &mut [F::Word], at: [i32; M]| {
@@ -197,7 +199,7 @@ impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
         if !self.is_packed {
             return self.run_unpacked(pixels, [at, step], [light, light_step]);
         }
-        let (mut packed, step) = (packed_from(at, step[0]), packed_step(step));
+        let (mut packed, step) = (packed_from(at, step[0]), packed_step([turned(step[0]), step[1]]));
         for pixel in pixels {
             *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
             (packed, light) = (packed.wrapping_add(step), light.plus(light_step));

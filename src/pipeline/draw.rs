@@ -2,7 +2,7 @@
 
 use super::clip::{Clip, MOST_CORNERS, ScreenVertex};
 use super::color::{Coloring, dim};
-use super::setup::{Cull, Needs, Oriented, TriangleSetup, area, position};
+use super::setup::{Cull, Needs, Oriented, Packing, TriangleSetup, area, position};
 use super::shade::{Quality, Shader};
 use super::span::{Rows, Window};
 use super::stats::Count;
@@ -323,11 +323,14 @@ pub(super) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
     shader: &S,
     [is_orthographic, is_gray]: [bool; 2],
 ) -> Needs {
+    let texture_scale = shader.texture_scale().min(8);
+    let inputs = shader.inputs();
     Needs {
-        inputs: shader.inputs(),
+        inputs,
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
-        texture_scale: shader.texture_scale().min(8),
+        texture_scale,
+        packing: Packing::new(shader.packed_log2(), texture_scale, inputs),
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,
     }

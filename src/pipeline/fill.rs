@@ -26,7 +26,9 @@ pub trait Fill<const N: usize> {
     fn pixel(&self, at: [i32; N]) -> Self::Word;
 
     /// Any number of pixels side by side, the first at `at`, each `step` further.
-    #[inline]
+    ///
+    /// Not inlined, here and in others: two functions have it.
+    #[inline(never)]
     fn run_long(&self, pixels: &mut [Self::Word], mut at: [i32; N], step: [i32; N]) {
         for pixel in pixels {
             *pixel = self.pixel(at);
@@ -122,7 +124,8 @@ impl<W, const N: usize, C: Fn([i32; N]) -> W> Fill<N> for Each<W, C> {
 /// whatever has as many.
 ///
 /// A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So runs are so short, before they
-/// start anew from 32 bits, that all of that is 1/16 texel at most.
+/// start anew from 32 bits, that all of that is 1/16 texel at most. What it is exactly [`Packing`](super::setup::Packing) has, so
+/// that it makes nobody see the wrong side of a whole coordinate, or the opposite border.
 pub(crate) struct Texels<'a, F> {
     texture: &'a Texture<'a>,
     is_packed: bool,
@@ -190,7 +193,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         let [a, b] = self.texture.log2();
         // After 64 pixels a truncated step is off by 1/16 texel of 64.
         let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
+        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
             run(block, packed_from([u >> a, v >> b], u_step), step);
@@ -334,6 +337,12 @@ pub(super) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
 #[inline]
 pub(super) fn packed_step([u, v]: [i32; 2]) -> u32 {
     ((v as u32) << 16).wrapping_add(u as u32)
+}
+
+/// A step of u without whole turns, which would be carried into v.
+#[inline]
+pub(super) fn turned(u_step: i32) -> i32 {
+    (u_step as i16).into()
 }
 
 /// A step without its last bits, cut towards zero.

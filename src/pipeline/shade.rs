@@ -140,6 +140,12 @@ pub trait Shader<F: PixelFormat> {
         0
     }
 
+    /// Log₂ of the texture's sides, if coordinates are packed in one word.
+    #[doc(hidden)]
+    fn packed_log2(&self) -> Option<[u32; 2]> {
+        None
+    }
+
     /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
     /// ways to colour a pixel may do so here, once for many.
     fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {
@@ -205,7 +211,8 @@ pub trait Pixels<W, Q>: sealed::Sealed + Sized {
     fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
 
     /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
-    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners. Of more than five
+    /// then red, green and blue, or one grey. They never leave the range of the triangle's corners, and u and v are less than the
+    /// greatest value there, unless they are the same at all three. Of more than five
     /// attributes nothing is filled.
     #[inline]
     fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {

@@ -116,9 +116,11 @@ impl TriangleSetup {
         if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
             return false;
         }
-        match needs.straight {
+        let are_set = match needs.straight {
             Straight::Below(limit)
-                if needs.inputs != Inputs::None && !Bend::is_needless(&edges, q, least, limit) =>
+                if needs.inputs != Inputs::None
+                    && most != least
+                    && !Bend::is_needless(&edges, q, least, limit) =>
             {
                 self.set_bending(triangle, needs, &slopes, &q, limit, simple)
             }
@@ -126,7 +128,15 @@ impl TriangleSetup {
                 self.straight = true;
                 self.set_linear(triangle, needs, &slopes)
             }
+        };
+        if are_set && needs.packing.inset > 0 {
+            if needs.is_exactly_straight(least, most) {
+                self.lean(triangle, needs, 2, i32::MAX);
+            } else {
+                self.keep_small_inside(needs);
+            }
         }
+        are_set
     }
 
     /// Sets attributes that may bend: false, and nothing of use done, where they do too much.

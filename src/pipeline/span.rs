@@ -71,7 +71,11 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
 
     #[inline]
     fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
-        self.span.fill::<Q, N, L>(self.pixels, fill);
+        if self.span.setup.straight {
+            self.span.fill_straight(self.pixels, fill);
+        } else {
+            self.span.fill::<Q, N, L>(self.pixels, fill);
+        }
     }
 }
 

@@ -139,7 +139,38 @@ fn normalise(q: u32) -> (u32, u32) {
 }
 
 impl Span<'_> {
-    /// Fills pixels from this span's first one, run by run.
+    /// Fills pixels from this span's first one, of a straight triangle.
+    #[inline(never)]
+    pub(crate) fn fill_straight<const N: usize, L: Fill<N>>(&self, mut pixels: &mut [L::Word], fill: &L) {
+        let setup = self.setup;
+        let Some(attributes) = setup.attributes.first_chunk::<N>() else {
+            return;
+        };
+        let (mut x, mut left) = (self.x, pixels.len() as i32 - 1);
+        'run: loop {
+            let (mut at, mut step) = ([0; N], [0; N]);
+            for (i, attribute) in attributes.iter().enumerate() {
+                let plane = setup.at(&attribute.plane, x, self.y);
+                if setup.leans && left > 0 && attribute.leaves(plane, left) {
+                    // Up to where it leaves its range an exact attribute stays so.
+                    left >>= 1;
+                    continue 'run;
+                }
+                (at[i], step[i]) = attribute.along(plane, left);
+            }
+            let count = left + 1;
+            let Some((run, rest)) = core::mem::take(&mut pixels).split_at_mut_checked(count as usize) else {
+                return;
+            };
+            fill.run_long(run, at, step);
+            if rest.is_empty() {
+                return;
+            }
+            (x, left, pixels) = (x + count, rest.len() as i32 - 1, rest);
+        }
+    }
+
+    /// Likewise of one that is not straight, run by run.
     ///
     /// Not inlined: a shader that chooses between loops would need the stack of all of them.
     #[inline(never)]
@@ -149,14 +180,6 @@ impl Span<'_> {
             return;
         };
         let mut left = pixels.len() as i32 - 1;
-        if setup.straight {
-            let (mut at, mut step) = ([0; N], [0; N]);
-            for (i, attribute) in attributes.iter().enumerate() {
-                let plane = setup.at(&attribute.plane, self.x, self.y);
-                (at[i], step[i]) = attribute.along(plane, left);
-            }
-            return fill.run_long(pixels, at, step);
-        }
         if Q::EVERY_PIXEL && setup.sliver {
             for (x, pixel) in (self.x..).zip(pixels) {
                 *pixel = fill.pixel(setup.resolve_in_sliver(attributes, x, self.y));

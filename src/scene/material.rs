@@ -154,6 +154,13 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         self.texture_scale.into()
     }
 
+    fn packed_log2(&self) -> Option<[u32; 2]> {
+        match &self.surface {
+            Surface::Textured(texture) => packed_log2::<Q>(texture, self.texture_scale),
+            Surface::Flat(_) | Surface::Gouraud => None,
+        }
+    }
+
     fn coloring(&self, pose: &Pose) -> Coloring {
         let Some(lights) = self.lights else {
             return Coloring::default();
@@ -281,6 +288,10 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
         self.texture_scale.into()
     }
 
+    fn packed_log2(&self) -> Option<[u32; 2]> {
+        packed_log2::<Q>(&self.texture, self.texture_scale)
+    }
+
     fn color(&self, varying: &Varying) -> F::Word {
         F::rgb565(self.texture.fetch(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
     }
@@ -288,6 +299,10 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
     fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
         textured::<F, Q, P>(&self.texture, self.texture_scale.into(), pixels);
     }
+}
+
+fn packed_log2<Q: Quality>(texture: &Texture<'_>, texture_scale: u8) -> Option<[u32; 2]> {
+    (!Q::EVERY_PIXEL && texture.is_packable(texture_scale.into())).then_some(texture.log2())
 }
 
 fn textured<F, Q, P>(texture: &Texture<'_>, scale_log2: u32, pixels: P)

@@ -120,6 +120,13 @@ impl Triangle {
         let [a, b, c] = self.0.map(|corner| corner.attributes[attribute]);
         (a.min(b).min(c), a.max(b).max(c))
     }
+
+    /// The smallest and the largest value that may be sampled: of a texture coordinate all that is below the largest of the
+    /// vertices', but one that is the same all over stays what it is.
+    pub(crate) fn sampled(&self, attribute: usize) -> (i32, i32) {
+        let (low, high) = self.range(attribute);
+        (low, if attribute < 2 { (high - 1).max(low) } else { high })
+    }
 }
 
 /// A triangle at one pixel centre.
@@ -130,6 +137,56 @@ pub(crate) struct Sample<'a> {
     y: i32,
     /// Barycentric weights times twice the area; none is negative inside.
     weights: [i128; 3],
+}
+
+/// An attribute that is straight on the screen, at one pixel centre: exact, with the side on which it is sampled.
+///
+/// That side is found as coverage finds its own: an infinitely small step to the right, and one infinitely smaller than that
+/// down. So of a coordinate that is whole at a centre the step says which texel it is, and of all triangles of a sprite it says
+/// the same.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Straight {
+    /// Its value in units of 2⁻¹⁶, times `area`.
+    sum: i128,
+    area: i128,
+    /// 1 if the step makes it more, −1 if less, 0 if it is the same all over the triangle.
+    pub(crate) direction: i128,
+    /// The smallest and the largest of the three vertices' values.
+    range: (i32, i32),
+}
+
+impl Straight {
+    /// In units of 2⁻¹⁶.
+    pub(crate) fn value(&self) -> f64 {
+        self.sum as f64 / self.area as f64
+    }
+
+    /// The whole number of `unit`s below it after the step, if it is `ahead` further in the direction of the step (both in units
+    /// of 2⁻¹⁶).
+    fn whole(&self, ahead: i128, unit: i128) -> i128 {
+        let (sum, unit) = (self.sum + self.direction * ahead * self.area, unit * self.area);
+        // Below a whole number is the one before: ceil − 1.
+        if self.direction < 0 { -(-sum).div_euclid(unit) - 1 } else { sum.div_euclid(unit) }
+    }
+
+    /// The texels that may be seen: that of the coordinate times 2^`scale_log2`, and what lies up to `ahead` units of 2⁻¹⁶
+    /// (before scaling) in the direction of the step, as far as the vertices' range goes: from its least value to below its
+    /// largest.
+    pub(crate) fn texels(&self, scale_log2: u32, ahead: i128) -> std::ops::RangeInclusive<i128> {
+        let unit = 1 << (16 - scale_log2);
+        let (low, high) = (i128::from(self.range.0), i128::from(self.range.1));
+        let first = low.div_euclid(unit);
+        let last = (high - 1).max(low).div_euclid(unit);
+        let [here, there] = [0, ahead].map(|ahead| self.whole(ahead, unit));
+        assert!((first..=last).contains(&here), "a step into the triangle stays in its range");
+        let there = there.clamp(first, last);
+        here.min(there)..=here.max(there)
+    }
+
+    /// The same in units of 2⁻¹⁶: for whom sees coordinates and not texels.
+    pub(crate) fn values(&self, ahead: i128) -> std::ops::RangeInclusive<i128> {
+        self.texels(16, ahead)
+    }
 }
 
 /// How much an attribute changes over one pixel, in units of 2⁻¹⁶: the two ways to read the contract.
@@ -187,6 +244,20 @@ impl Sample<'_> {
     /// Straight on the screen: Σ λ·a, in units of 2⁻¹⁶.
     pub(crate) fn affine_attribute(&self, attribute: usize) -> f64 {
         self.sum(|corner| corner.attributes[attribute].into()) as f64 / self.area() as f64
+    }
+
+    /// The attribute, straight on the screen.
+    pub(crate) fn straight(&self, attribute: usize) -> Straight {
+        let sum = |sample: &Sample<'_>| sample.sum(|corner| corner.attributes[attribute].into());
+        let here = sum(self);
+        let step = |dx, dy| (sum(&self.triangle.at(self.x + dx, self.y + dy)) - here).signum();
+        let (right, down) = (step(1, 0), step(0, 1));
+        Straight {
+            sum: here,
+            area: self.area(),
+            direction: if right == 0 { down } else { right },
+            range: self.triangle.range(attribute),
+        }
     }
 
     /// How much the attribute changes over one pixel here.
