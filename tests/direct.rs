@@ -231,7 +231,7 @@ fn largest_error<Q: Quality, const RUN: usize>(triangle: &Triangle, strip: Strip
     let drawn = ShadedTriangle::new(&corners, Cull::None, &shader).expect("within range");
     let mut screen = Screen::new(Rectangle::new(Point::new(0, strip.row as i32), strip.size()));
     drawn.format::<Bits>().run::<RUN>().draw(&mut screen).expect("patience");
-    let (low, high) = triangle.range(0);
+    let (low, high) = triangle.sampled(0);
     let error = |(&(x, y), &Bits(u)): (&(i32, i32), &Bits)| {
         assert!((low..=high).contains(&u), "{x}, {y} shows what no corner does");
         let exact = triangle.at(x, y);
@@ -317,7 +317,7 @@ fn corners() -> impl Strategy<Value = [ScreenVertex; 4]> {
 
 /// Where in a texture of 2^`log2` texels a side the corners of a picture are.
 fn with_texels(corners: &[ScreenVertex; 4], log2: u32) -> [ScreenVertex; 4] {
-    let (low, high) = (1 << 12, (16 << (log2 + 12)) - (1 << 12));
+    let (low, high) = (0, 1 << (log2 + 16));
     let uv = [[low, low], [low, high], [high, high], [high, low]];
     std::array::from_fn(|i| {
         let [u, v] = uv[i].map(I16F16::from_bits);
@@ -413,7 +413,7 @@ fn what_a_pixel_shows_does_not_depend_on_what_else_is_shown_400_cases() {
 /// A card of 64 × 64 texels and the same as a mesh, for its front or its back.
 fn as_mesh(size: [I16F16; 2], is_back: bool) -> ([Vertex; 4], [[u16; 3]; 2]) {
     let [x, y] = size.map(|side| side.to_num::<f32>() / 2.0);
-    let (low, high) = (I12F4::from_bits(1), I12F4::from_bits(64 * 16 - 1));
+    let (low, high) = (I12F4::ZERO, I12F4::from_bits(64 * 16));
     let (left, right) = if is_back { (high, low) } else { (low, high) };
     let vertices = [
         Vertex::new(-x, y, 0.0).uv_sixteenths(left, low),
@@ -538,6 +538,102 @@ fn a_part_of_a_texture_shows_nothing_of_the_rest_1000_cases() {
         prop_assert!(screen.pixels.values().all(|color| color.into_storage() == WHITE));
         Ok(())
     });
+}
+
+/// Which texel of a picture every pixel shows, as column + 256 · row.
+fn shown(draw: impl Fn(&mut Screen<Rgb565>, &Texture<'_>), log2: [u32; 2]) -> HashMap<(i32, i32), usize> {
+    // Their columns in one picture, and their rows in another.
+    let side = |log2: u32| 0..1_u16 << log2;
+    let columns: Vec<_> = side(log2[1]).flat_map(|_| side(log2[0])).collect();
+    let rows: Vec<_> = side(log2[1]).flat_map(|row| side(log2[0]).map(move |_| row)).collect();
+    let [columns, rows] = [columns, rows].map(|texels| {
+        let mut screen = Screen::of(700, 700);
+        draw(&mut screen, &Texture::new(&texels, log2[0], log2[1]));
+        screen.pixels
+    });
+    let word = |color: &Rgb565| usize::from(color.into_storage());
+    columns.iter().map(|(at, column)| (*at, word(column) + 256 * word(&rows[at]))).collect()
+}
+
+#[test]
+fn a_picture_of_a_texel_a_pixel_shows_each_texel_once_800_cases() {
+    let log2 = || prop_oneof![3 => 0..=6_u32, 1 => Just(7), 1 => Just(8)];
+    let place = || prop_oneof![(0..200_i32).prop_map(|at| 2 * at), 0..400_i32];
+    let cases = ([log2(), log2()], [place(), place()], 0..8_usize, 0..3_u8, any::<bool>());
+    for_all("direct: 1:1", 800, cases, |(log2, [x, y], way, kind, shift)| {
+        // Turned by so many quarters, and its back seen in half of the ways: then it is mirrored about its diagonal, too.
+        let sides = if (way % 2 == 0) == (way < 4) { [log2[0], log2[1]] } else { [log2[1], log2[0]] };
+        let sides = sides.map(|log2| 1 << log2);
+        // From whole pixels on, or half ones: then coordinates are whole at the pixels' centres.
+        let off = if shift { 8 } else { 0 };
+        let at = [x * 16 + off, y * 16 + off];
+        let to = [at[0] + 16 * sides[0], at[1] + 16 * sides[1]];
+        let mut corners = [[at[0], at[1]], [at[0], to[1]], [to[0], to[1]], [to[0], at[1]]]
+            .map(|at| at.map(|at| I12F4::from_bits(at as i16)));
+        if way >= 4 {
+            corners.swap(1, 3);
+        }
+        corners.rotate_left(way % 4);
+        let texels = shown(
+            |screen, texture| {
+                let image = if kind == 0 {
+                    let corners = corners.map(|[x, y]| ScreenVertex { x, y, ..ScreenVertex::default() });
+                    PerspectiveImage::new(
+                        texture,
+                        &corners.map(|corner| ScreenVertex { q: U1F31::MAX >> 1, ..corner }),
+                    )
+                    .expect("within range")
+                } else {
+                    PerspectiveImage::between(texture, corners).expect("a rectangle")
+                };
+                let image = if kind == 2 { image.two_sided() } else { image.back(texture) };
+                image.draw(screen).expect("patience");
+            },
+            log2,
+        );
+        let mut found: Vec<_> = texels.values().copied().collect();
+        found.sort_unstable();
+        let all = (0..1_usize << log2[1])
+            .flat_map(|row| (0..1_usize << log2[0]).map(move |column| column + 256 * row));
+        prop_assert!(found.into_iter().eq(all));
+        Ok(())
+    });
+}
+
+#[test]
+fn a_posed_picture_of_a_texel_a_pixel_shows_each_texel_once() {
+    for log2 in 0..=8 {
+        let side = 1 << log2;
+        for size in [Size::new(135, 240), Size::new(240, 240), Size::new(320, 241), Size::new(64, 65)] {
+            // A pixel is 1/256 unit at a distance of 1: all of this is exact.
+            let camera = Camera::focal(256.0, size);
+            for quarter in 0..4 {
+                for turned in [0, 180] {
+                    let pose = Pose::IDENTITY
+                        .rotated_y(Turn::from_degrees(turned))
+                        .rotated_z(Turn::from_degrees(90 * quarter))
+                        .at(Vec3::lit(0.0, 0.0, -1.0));
+                    let extent = [I16F16::from_num(side) / 256; 2];
+                    let texels = shown(
+                        |screen, texture| {
+                            let image = PerspectiveImage::posed(texture, &camera, &pose, extent);
+                            image.back(texture).draw(screen).expect("patience");
+                        },
+                        [log2; 2],
+                    );
+                    let visible = (side.min(size.width as i32) * side.min(size.height as i32)) as usize;
+                    let mut found: Vec<_> = texels.values().copied().collect();
+                    found.sort_unstable();
+                    found.dedup();
+                    let all = (side as usize).pow(2);
+                    // What the screen cuts off is a row or column more on one side, where the middle is between two pixels.
+                    assert_eq!(found.len(), texels.len(), "{side}, {size:?}, {quarter}, {turned}");
+                    assert_eq!(texels.len(), visible, "{side}, {size:?}, {quarter}, {turned}");
+                    assert!(visible < all || found.iter().all(|texel| texel % 256 < side as usize));
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -39,8 +39,8 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// # The picture
 ///
-/// All of the texture, or a [part](Self::part) of it. It ends 1/16 texel inside the texels at its border, so that
-/// nothing of what is beyond them shows: neither other parts of the texture nor its opposite border.
+/// All of the texture, or a [part](Self::part) of it, from border to border. Nothing of what is beyond shows: neither other parts of
+/// the texture nor its opposite border. Where a texel is a pixel, seen straight and from whole pixels on, each texel shows once.
 ///
 /// Its back is not seen, unless there is a picture on it ([`Self::back`]) or it is transparent ([`Self::two_sided`]).
 ///
@@ -99,11 +99,10 @@ struct Picture<'a> {
 
 impl<'a> Picture<'a> {
     fn new(texture: &Texture<'a>, part: &Rectangle) -> Self {
-        // A sixteenth inside.
         let side = |start: i32, length: u32| {
             let start = i64::from(start).clamp(-2047, 2046);
             let end = (start + i64::from(length.max(1))).min(2047);
-            [start * 16 + 1, end * 16 - 1].map(|at| I12F4::from_bits(at as i16))
+            [start, end].map(|at| I12F4::from_bits(at as i16 * 16))
         };
         let [left, right] = side(part.top_left.x, part.size.width);
         let [top, bottom] = side(part.top_left.y, part.size.height);
