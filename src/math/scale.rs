@@ -43,7 +43,7 @@ pub(super) const fn quotient(dividend: u64, divisor: u64, exponent: i32) -> U10F
     }
 }
 
-/// A scale that a [`Pose`] cannot have: it is not a number of 0 or more and below 1024.
+/// A scale that a [`Pose`](crate::Pose) cannot have: it is not a number of 0 or more and below 1024.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleError {
     /// What was given.
