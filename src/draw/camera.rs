@@ -36,12 +36,12 @@ impl Camera {
     /// Triangles that cross the near plane or leave the guard band are clipped; those that turn
     /// away are culled as the shader says.
     ///
-    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px. Before rounding it is off by at most 1/1024
-    /// px, and nearer than ¼ of a unit (of the mesh or of the world, whichever is longer) by ¼/w of that as much, but not by more than
-    /// 1/128 px, up to the near plane: for focal lengths of up to 1024 pixels and scales of up to 100, at any distance from the
-    /// world's origin. At the largest scale it may be 1/22 px there. So it is with the corners at which planes cut a triangle; and
-    /// none that is seen is left out, at any scale. Where the scales of
-    /// the mesh's axes differ, all vertices are placed as exactly as if all axes had the largest.
+    /// A vertex is placed as the numbers of mesh, pose and camera say, rounded to 1/16 px. Before rounding it is off
+    /// by at most 1/1024 px, and nearer than ¼ of a unit (of the mesh or of the world, whichever is longer) by ¼/w of
+    /// that as much, but not by more than 1/128 px, up to the near plane: for focal lengths of up to 1024 pixels and
+    /// scales of up to 100, at any distance from the world's origin. At the largest scale it may be 1/22 px there. So
+    /// it is with the corners at which planes cut a triangle; and none that is seen is left out, at any scale. Where
+    /// the scales of the mesh's axes differ, all vertices are placed as exactly as if all axes had the largest.
     ///
     /// `pose` may stretch, shear and [mirror](Pose::is_mirrored) the mesh. Fronts stay fronts, and light falls on the
     /// surface as it lies in the world: see [`Pose`].

@@ -44,8 +44,9 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// # The picture
 ///
-/// All of the texture, or a [part](Self::part) of it, from border to border. Nothing of what is beyond shows: neither other parts of
-/// the texture nor its opposite border. Where a texel is a pixel, seen straight and from whole pixels on, each texel shows once.
+/// All of the texture, or a [part](Self::part) of it, from border to border. Nothing of what is beyond shows: neither
+/// other parts of the texture nor its opposite border. A part that reaches beyond the texture shows it again there,
+/// as [`Textured`] does. Where a texel is a pixel, seen straight and from whole pixels on, each texel shows once.
 ///
 /// Its back is not seen, unless there is a picture on it ([`Self::back`]) or it is transparent ([`Self::two_sided`]).
 ///
@@ -54,11 +55,12 @@ use embedded_graphics::primitives::Rectangle;
 /// Coverage is that of [`draw_triangle`](crate::draw_triangle). Columns and rows from −1023 to 1022 are drawn, as far as the
 /// target's bounding box has them, which need not begin at (0, 0): `clipped`, `cropped` and `translated` targets do.
 ///
-/// The colours are the same whatever part of the screen the target shows (if it begins left of column 0 there are columns
-/// left of it, and rows begin there; else they begin at column 0). They are those of two triangles in a
-/// [`Band`](crate::Band) of 1023 columns without depth, byte for byte, in rows of at most [`run`](Self::run) pixels if that is 32 or more; in longer
-/// ones perspective begins anew after every run, as exact (¼ pixel), though not always with the same last bits. From
-/// [`posed`](Self::posed) the same goes for every band as wide as the camera's picture.
+/// The colours are the same whatever part of the screen the target shows (if it begins left of column 0 there are
+/// columns left of it, and rows begin there; else they begin at column 0). They are those of two triangles in a
+/// [`Band`](crate::Band) of 1023 columns without depth, byte for byte, in rows of at most [`run`](Self::run) pixels
+/// if that is 32 or more; in longer ones perspective begins anew after every run, as exact (¼ pixel), though not
+/// always with the same last bits. From [`posed`](Self::posed) the same goes for every band as wide as the camera's
+/// picture.
 ///
 /// # Cost
 ///
@@ -187,10 +189,10 @@ impl<'a> PerspectiveImage<'a> {
 
     /// A texture in a pose before a camera.
     ///
-    /// `size` is width and height in the units of the pose, whose scales along x and y multiply them (0 … 15.99, saturated; steps of
-    /// 1/2048). The picture stands around the pose's origin; unturned it faces +z, where the camera is, with its top
-    /// towards +y. In a [mirrored](Pose::is_mirrored) pose it is the picture in a mirror: the front faces where the pose turns +z, and
-    /// what is written on either side is seen the wrong way round.
+    /// `size` is width and height in the units of the pose, whose scales along x and y multiply them (0 … 15.99,
+    /// saturated; steps of 1/2048). The picture stands around the pose's origin; unturned it faces +z, where the
+    /// camera is, with its top towards +y. In a [mirrored](Pose::is_mirrored) pose it is the picture in a mirror: the
+    /// front faces where the pose turns +z, and what is written on either side is seen the wrong way round.
     ///
     /// Whatever the numbers, it draws or leaves out, as [`Camera::draw`] does: what crosses the near plane or
     /// leaves the guard band is clipped, and nothing is drawn outside the camera's picture.
@@ -205,8 +207,7 @@ impl<'a> PerspectiveImage<'a> {
 impl<'a, F, const RUN: usize> PerspectiveImage<'a, F, RUN> {
     /// The same with a rectangle of the texture (in texels) on its front: a picture from a sheet of them.
     ///
-    /// Limited to −2047 … 2047; what lies outside the texture is as its [`Wrap`](crate::Wrap) says. Of an empty rectangle
-    /// one texel is shown.
+    /// Limited to −2047 … 2047; what lies outside the texture shows it again. Of an empty rectangle one texel is shown.
     #[must_use]
     pub fn part(self, part: &Rectangle) -> Self {
         Self { front: Picture::new(&self.front.texture, part), ..self }

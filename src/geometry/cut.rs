@@ -1,31 +1,39 @@
-//! Cut: triangles that cross a plane of clipping, or come very near the eye.
+//! Clipping of one triangle: what of it lies between the near and the far plane and inside the guard band.
 //!
-//! - In: the corners of a triangle in the mesh.
-//! - Out: what is left of it, as a polygon of screen vertices, a fan around the first.
-//! - Assumes: at least one corner lies outside, or too near for 32 bits.
+//! - In: the corners of a triangle in mesh space.
+//! - Out: what is left of it, as a convex polygon of screen vertices that is a fan around the first; perhaps no corners.
+//! - Assumes: a corner lies outside a clipping plane, or is so near that 32 bits are too few to place it.
 //!
-//! The corner on an edge is computed from the end inside towards the end outside, in both triangles of the edge. A vertex that needs
-//! no clipping stays where the triangles have it that are not cut, and counts as inside all planes.
+//! This is Sutherland–Hodgman in clip space, one plane after another, in place. Neighbours have to fit together:
 //!
-//! # How exact corners are
+//! - Where an edge crosses a plane the new vertex is computed from the end inside towards the end outside. Both triangles of
+//!   the edge do the same with the same numbers.
+//! - A vertex that needs no clipping keeps the position that triangles that are not clipped have, and counts as inside.
 //!
-//! Clip coordinates have 46 bits here, [`FINE`] more than elsewhere. Of these units [`ToClip::place_fine`] gets x, y and w less than
-//! 9 wrong, and two cuts and the last shift 8 more of w. x and y are held in units of 2⁻¹⁵ · 1/16 px · w, of which as much makes 10 in all.
-//! So before it is rounded to 1/16 px a corner is off by at most
+//! # How exact the corners are
+//!
+//! Clip coordinates have 46 bits here, [`FINE`] more than elsewhere. In these finer units:
+//!
+//! - x, y and w of [`ToClip::place_fine`] are off by less than 9. Clipping by two planes and the last shift add 8 for w.
+//! - x and y are held as X = w · position / 2¹⁵, the position in 1/16 px. So a unit of X is 2¹¹/w pixels. The same steps make
+//!   X off by 10 units.
+//!
+//! Before it is rounded to 1/16 px a corner is therefore off by at most
 //!
 //! ```text
-//! (9·2^k + 17·c + 20 480) / w px,   2^k at least the focal length, c its distance from the line of sight in pixels
+//! (9·2^k + 17·c + 20 480) / w pixels,   2^k ≥ the focal length, and c the corner's distance from the line of sight, in pixels
 //! ```
 //!
-//! w is at least near, 1/256. And a mesh that reaches the eye has a unit of 2⁻²⁸ or less: its scale is below 2¹⁰, and the way from its
-//! origin to the eye is not longer than it reaches, 2¹⁴ (this is said of a rotation; a matrix with elements up to 2 may be four times as coarse). So w
-//! is at least 2²⁰, and 2³⁰ at a scale of 1. For a focal length of 512 px that makes 1/25 px in the corner of a screen of 1023 px at the very
-//! most, and a thousandth of that at a scale of 1; for the longest focal length, at the border of the guard band and 3069 px beside a line of sight that
-//! leads far past it, 1/7 px.
+//! How small can w be? The near plane is at least 2⁻⁸ away. A mesh of scale s < 2¹⁰ reaches 14·s < 2¹⁴ from its origin. If it
+//! reaches the eye its origin is no farther, so its finer unit is at most 2⁻²⁸: w ≥ 2²⁰. At a scale of 1 it is w ≥ 2³⁰. (All
+//! this is for a rotation. A matrix with elements up to 2 may make units four times as coarse.) Examples at w = 2²⁰:
 //!
-//! Rounding adds 1/32 px. Both together are below ¼ px: the planes, at ±1022¾ px, stay beyond the centres of the last columns and rows,
-//! which are filled; and what is cut stays inside the guard band, ¾ px beyond. So nothing that is seen has to be left out for
-//! want of bits. (What a matrix that is no rotation moves farther than that is put on the guard band's border.)
+//! - A focal length of 512 px, in a corner 1023 px from the line of sight: 1/25 px.
+//! - The longest focal length, 2¹³ px, on the guard band's border, 3069 px from a line of sight far outside: 1/7 px.
+//!
+//! Rounding adds 1/32 px, so the sum is below ¼ px. The sides of clipping are at ±1022¾ px. So they stay beyond the centres
+//! of the last columns and rows that can be drawn, ±1022½ px, and inside the guard band of ±1023½ px. Nothing visible is lost
+//! for want of bits. (A corner that a matrix that is no rotation takes farther is put on the guard band's border.)
 
 use super::clip::{CUT_AT, Clip, FINER};
 use super::coloring::Coloring;
@@ -43,21 +51,23 @@ pub(crate) const MOST_CORNERS: usize = 9;
 /// x of a corner that is still to be put on the screen.
 const NOT_PLACED: I12F4 = I12F4::MIN;
 
-/// How many bits x and y lose in sixteenths of a pixel.
+/// x and y of a corner are held as w · position in 1/16 px / 2^this. Positions in the guard band are within ±2¹⁴, so x and y
+/// are within ±w/2.
 const COARSER: i32 = 15;
 
 /// A polygon in clip space, and the screen vertices that become of it.
 struct Polygon<'a> {
-    /// Their positions are those of the mesh's vertices that need no clipping, or [`NOT_PLACED`].
+    /// A vertex that needs no clipping has its position. Any other has [`NOT_PLACED`] for x, and in the bits of y outside of
+    /// which sides it lies, as [`Clip::look`] puts them there.
     vertices: &'a mut [ScreenVertex; MOST_CORNERS],
-    /// x and y, which divided by w are 2^−[`COARSER`] px/16 from the screen's corner; w in clip units, with [`FINE`] bits more.
+    /// x and y as [`COARSER`] says, from the screen's upper left corner; w in clip units with [`FINE`] bits more.
     at: [At; MOST_CORNERS],
     count: usize,
-    /// The near plane and the far one, as w.
+    /// w of the near and of the far plane, in the same unit.
     planes: [i64; 2],
 }
 
-/// Three coordinates of 48 bits, each in an upper part and a lower one.
+/// x, y and w, 48 bits each, as upper 16 and lower 32 bits. (Three `i64` would take more stack.)
 #[derive(Clone, Copy)]
 struct At {
     lower: [u32; 3],
@@ -79,18 +89,20 @@ impl Polygon<'_> {
         (self.at[i].upper[axis], self.at[i].lower[axis]) = ((at >> 32) as i16, at as u32);
     }
 
+    /// Sets a coordinate of corner `to` between those of `a` (where `t` is 0) and `b` (1).
     #[inline(never)]
     fn mix(&mut self, axis: usize, [a, b, to]: [usize; 3], t: &Ratio) {
         self.set(to, axis, t.between(self.at(a, axis), self.at(b, axis)));
     }
 
-    /// Without its last 0 … 31 bits, where the rest fits 32.
+    /// A coordinate without its last `dropped` bits, 0 … 31. What is left has to fit 32 bits.
     #[inline(never)]
     fn short(&self, i: usize, axis: usize, dropped: i32) -> i32 {
         i32::from(self.at[i].upper[axis]) << (31 - dropped) << 1 | (self.at[i].lower[axis] >> dropped) as i32
     }
 
-    /// Moves the vertices before `first` to the end, by three reversals: the library's way takes 2 KiB of flash, and more stack.
+    /// Moves the vertices before `first` to the end, by three reversals. (`rotate_left` takes 2 KiB of flash, and more
+    /// stack.)
     #[inline(never)]
     fn rotate(&mut self, first: usize) {
         if first > 0 {
@@ -100,7 +112,7 @@ impl Polygon<'_> {
         }
     }
 
-    /// The library's takes 600 bytes, unrolled.
+    /// Reverses the vertices from `first` to before `end`. (`reverse` takes 600 bytes, unrolled.)
     #[inline(never)]
     fn reverse(&mut self, mut first: usize, mut end: usize) {
         while first + 1 < end {
@@ -112,7 +124,7 @@ impl Polygon<'_> {
     }
 }
 
-/// The library's moves what it swaps three times, by a routine of 1300 bytes.
+/// Swaps two elements, `first` < `last`. (The library's `swap` moves them by a routine of 1300 bytes, three times.)
 #[inline(always)]
 fn swap<T>(all: &mut [T], first: usize, last: usize) {
     if let Some((before, [last, ..])) = all.split_at_mut_checked(last)
@@ -123,8 +135,8 @@ fn swap<T>(all: &mut [T], first: usize, last: usize) {
 }
 
 impl Clip {
-    /// Cuts a triangle that is not inside all planes, or has a corner too near for 32 bits, and puts what is left of it on the
-    /// screen, as a fan around its first vertex. Returns how many corners that has, and whether it is [folded](super::fan).
+    /// Clips a triangle and puts what is left of it on the screen, as a fan around its first vertex. Returns how many corners
+    /// that has, and whether it is [folded](super::fan).
     #[cold]
     #[inline(never)]
     pub(crate) fn cut(
@@ -139,7 +151,7 @@ impl Clip {
         for (i, vertex) in corners.into_iter().enumerate() {
             self.start(to_clip, coloring, vertex, &mut polygon, i);
         }
-        // Where no vertex is outside a side no corner will be.
+        // A side outside of which no vertex lies cuts nothing off.
         let outside = (0..3).fold(0, |all, i| all | Self::outside(&polygon, i));
         for side in 0..6 {
             if outside >> side & 1 != 0 {
@@ -155,7 +167,7 @@ impl Clip {
         (count, is_folded)
     }
 
-    /// Where a vertex is before anything is cut.
+    /// Sets corner `i` to a vertex of the triangle: clip coordinates, attributes and, if it needs no clipping, its position.
     #[inline(never)]
     fn start(
         &self,
@@ -171,7 +183,7 @@ impl Clip {
                 self.start_along(to_clip, vertex, polygon, i, axis);
             }
         } else {
-            // The same from 32 bits, which are as good.
+            // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
             let divisor = if self.flat != 0 { 1 << self.flat } else { w };
             for (axis, at) in [(0, x), (1, y)] {
@@ -184,13 +196,15 @@ impl Clip {
         self.look(polygon, i);
         let to = &mut polygon.vertices[i];
         to.set_attributes(vertex, coloring);
+        // `place_bare` may overwrite it.
         let outside = to.y;
-        // Most often it is behind the eye.
+        // The first condition saves that work: most often such a vertex is behind the eye.
         if !may_be_inside || !self.place_bare(to_clip, vertex, to) {
             (to.x, to.y) = (NOT_PLACED, outside);
         }
     }
 
+    /// Sets one clip coordinate of corner `i` from all bits there are: w (axis 2) first, as x and y need it.
     #[inline(never)]
     fn start_along(
         &self,
@@ -208,20 +222,21 @@ impl Clip {
         polygon.set(i, axis, at);
     }
 
-    /// Rounds a corner to the screen, if it has no position yet. One that numbers too coarse move out of the guard band is put on
-    /// its border; of a rotation there is none.
+    /// Projects corner `i` to the screen, if it has no position yet. One that lands outside the guard band is put on its
+    /// border: that takes a matrix that is no rotation, see the head of this file.
     #[inline(never)]
     fn put_on_screen(&self, polygon: &mut Polygon<'_>, i: usize) {
         if polygon.vertices[i].x != NOT_PLACED {
             return;
         }
-        // As many bits as fit 31: without perspective of x and y, of which w is no part.
+        // All coordinates are shortened alike, so that the largest has 30 bits and a sign. Without perspective w does not
+        // divide: it keeps its own unit.
         let is_flat = self.flat != 0;
         let [x, y, w, _] = polygon.at[i].upper.map(i32::from);
         let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
         let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
         let [x, y] = [0, 1].map(|axis| polygon.short(i, axis, dropped));
-        // Up, so that it is not before the near plane.
+        // Rounded up, so that it is not before the near plane and q not above 1.
         let w = polygon.short(i, 2, if is_flat { FINE } else { dropped }) + 1;
         let w = if is_flat { w.min(self.far) } else { w };
         let to = &mut polygon.vertices[i];
@@ -231,13 +246,14 @@ impl Clip {
         self.project(at, w, [FINE - dropped, COARSER], &[1 << (FINER - 1); 2], on_border, place);
     }
 
-    /// What x and y are divided by.
+    /// What x and y are divided by, in finer clip units: w, or 1 without perspective.
     #[inline(always)]
     fn divisor_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
         if self.flat != 0 { 1 << (self.flat + FINE) } else { polygon.at(i, 2) }
     }
 
-    /// How far inside a side a corner lies, linear in clip space: of near, far, left, right, top and bottom. Within ±2⁴⁷.
+    /// How far inside a side a corner lies, as a linear function in clip space: negative outside, within ±2⁴⁷. Sides are
+    /// near, far, left, right, top and bottom.
     #[inline(never)]
     fn distance(&self, polygon: &Polygon<'_>, i: usize, side: usize) -> i64 {
         let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
@@ -249,16 +265,16 @@ impl Clip {
         }
     }
 
-    /// How far from the screen's corner the guard band is cut at a corner.
+    /// The largest |x| and |y| of a corner that lies inside the sides: w · [`CUT_AT`] / 2^[`COARSER`].
     #[inline(always)]
     fn border_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
-        // ±1022¾ px are 1 − 2⁻¹⁰ − 2⁻¹² of 2^COARSER sixteenths, twice.
+        // ±1022¾ px are (1 − 2⁻¹⁰ − 2⁻¹²)/2 of 2^COARSER sixteenths.
         const { assert!(CUT_AT << 2 == (1 << (COARSER + 1)) - (5 << (COARSER - 11))) };
         let divisor = self.divisor_of(polygon, i);
         (divisor - (divisor >> 10) - (divisor >> 12)) >> 1
     }
 
-    /// Writes down in the place of y outside which sides a corner lies (bits).
+    /// Notes outside of which sides a corner lies: bit n of y for side n, in the order of [`Clip::distance`].
     #[inline(never)]
     fn look(&self, polygon: &mut Polygon<'_>, i: usize) {
         let [x, y, w] = [0, 1, 2].map(|axis| polygon.at(i, axis));
@@ -266,20 +282,20 @@ impl Clip {
         let [near, far] = polygon.planes;
         let mut outside = i16::from(w < near) | i16::from(w > far) << 1;
         for (at, bit) in [(x, 2), (y, 4)] {
-            // Both, perhaps, behind the eye.
+            // Behind the eye the border is negative, and both may be true.
             outside |= (i16::from(-at > border) | i16::from(at > border) << 1) << bit;
         }
         polygon.vertices[i].y = I12F4::from_bits(outside);
     }
 
-    /// Outside which sides a corner lies (bits): of none if it needs no clipping.
+    /// The sides outside of which a corner lies, as bits. None if it needs no clipping.
     #[inline(never)]
     fn outside(polygon: &Polygon<'_>, i: usize) -> u32 {
         let vertex = &polygon.vertices[i];
         if vertex.x == NOT_PLACED { vertex.y.to_bits() as u32 } else { 0 }
     }
 
-    /// Cuts a convex polygon by one plane (Sutherland–Hodgman, in place).
+    /// Clips a convex polygon by one plane. It may be left with no corners.
     #[inline(never)]
     fn cut_by(&self, polygon: &mut Polygon<'_>, side: usize) {
         let count = polygon.count;
@@ -294,22 +310,23 @@ impl Clip {
             polygon.count = 0;
             return;
         }
+        // Rotates it so that it begins with those inside: with the one that follows one outside.
         let outside = outside | outside << count; // twice around
-        // To the front with the first vertex inside that follows one outside.
         let first_out = outside.trailing_zeros();
         let first = first_out + (outside >> first_out).trailing_ones();
         polygon.rotate(if first < count as u32 { first as usize } else { first as usize - count });
-        // Inside: 0 … stay; outside: stay … count. Each plane adds at most one vertex to a convex polygon: there is room.
+        // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
+        // most: there is room for one per plane.
         let stay = (outside >> first).trailing_zeros() as usize;
         self.cross(polygon, [0, count - 1, stay + 1], side);
         self.cross(polygon, [stay - 1, stay, stay], side);
         polygon.count = stay + 2;
     }
 
-    /// Where an edge crosses a plane, computed from its end `inside`, as a corner in the place `to`, which may be that of the end
-    /// `outside`.
+    /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.
     #[inline(never)]
     fn cross(&self, polygon: &mut Polygon<'_>, [inside, outside, to]: [usize; 3], side: usize) {
+        // Rounded, one that counts as inside may lie a little outside.
         let before = self.distance(polygon, inside, side).max(0);
         let t = Ratio::new(before, -self.distance(polygon, outside, side), self.is_fine);
         for axis in 0..2 {
@@ -320,7 +337,7 @@ impl Clip {
             None => polygon.mix(2, [inside, outside, to], &t),
         }
         polygon.vertices[to].y = I12F4::ZERO;
-        // On a side nothing is outside the opposite one, and after the last sides no one asks.
+        // After the last two sides nothing is asked any more: what lies on the top side is not outside the bottom one.
         if side < 4 {
             self.look(polygon, to);
         }
@@ -332,23 +349,23 @@ impl Clip {
             I16F16::from_bits(mix(vertices[inside].v.to_bits(), vertices[outside].v.to_bits(), t.upper));
         for i in 0..3 {
             let [a, b] = [inside, outside].map(|vertex| i32::from(vertices[vertex].color[i].to_bits()));
-            // As the rest would say, for the most part.
+            // Most often they are equal, and then `mix` would give the same.
             vertices[to].color[i] = U8F8::from_bits(if a == b { a } else { mix(a, b, t.upper) } as u16);
         }
     }
 }
 
-/// A number of 0 … 1.
+/// A ratio of 0 … 1.
 struct Ratio {
     /// In units of 2⁻³⁰.
     upper: i32,
-    /// What is left, in units of 2⁻⁵⁴.
+    /// The remainder, in units of 2⁻⁵⁴.
     lower: i32,
 }
 
 impl Ratio {
-    /// before / (before + behind), both 0 … 2⁴⁷: a quotient of 30 bits and, if it is to be fine, another of what that leaves, so
-    /// that it is within 2⁻⁴⁴.
+    /// `before` / (`before` + `behind`), the distances of an edge's ends from a plane, 0 … 2⁴⁷ each: to 30 bits, and if it is
+    /// to be fine to 2⁻⁴⁴, by a second quotient of what the first one leaves.
     #[inline(never)]
     fn new(before: i64, behind: i64, is_fine: bool) -> Self {
         let whole = before + behind;
@@ -357,7 +374,7 @@ impl Ratio {
         }
         let shift = whole.leading_zeros() - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
         let (before, whole) = (before << shift, whole << shift);
-        // 1/whole = mantissa · 2⁻⁷⁸.
+        // From its upper 32 bits: 1/whole = mantissa · 2⁻⁷⁸. So before/whole in 2⁻³⁰ is before · mantissa / 2⁴⁸.
         let mantissa = Reciprocal::precise_normalised((whole >> 16) as u32, 1).mantissa;
         let upper = (mul_long(before, mantissa) >> 18).min(1 << 30) as i32;
         let rest = if is_fine { (before - mul_long(whole, upper)) as i32 } else { 0 };
@@ -375,7 +392,7 @@ impl Ratio {
     }
 }
 
-/// Weights 2³⁰ − t and t: no difference is taken that could overflow.
+/// a + (b − a) · t / 2³⁰, rounded to nearest. Weighted with 2³⁰ − t and t, as b − a might overflow.
 #[inline(never)]
 fn mix(a: i32, b: i32, t: i32) -> i32 {
     ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32

@@ -1,44 +1,47 @@
-//! Fan: a polygon on the screen as triangles around one of its vertices.
+//! Fan: a clipped polygon as triangles around one of its vertices.
 //!
-//! - In: a polygon that clipping left, its corners rounded to 1/16 px.
-//! - Out: the vertex around which no triangle is turned over.
+//! - In: the polygon that clipping left of a triangle, its corners rounded to 1/16 px.
+//! - Out: the vertex around which no triangle of the fan is turned over; or that there is none, and the polygon is *folded*.
 //! - Assumes: the polygon was convex before rounding.
 //!
-//! In clip space the polygon is convex. On the screen its corners are rounded to 1/16 px, and where two of them lie close
-//! together that may turn one of the fan's triangles over:
+//! A convex polygon may be divided into a fan around any of its vertices. But rounding may move two corners that lie close
+//! together so that a triangle of the fan gets the other winding:
 //!
 //! ```text
-//!   0 ───────────────── 3          1 should lie left of the line from 0 to 2. Rounded to its right, the triangle 0 1 2
-//!     ╲   1             │          is turned over, and the triangle 0 2 3 covers what is the neighbour's.
-//!        ╲ ╲            │          Around 1 there are 1 2 3 and 1 3 0 instead, which cover just the polygon.
+//!   0 ───────────────── 3          1 should lie below the line from 0 to 2. Rounding took it above: 0 1 2 is turned over, and
+//!     ╲   1             │          0 2 3 covers pixels beyond 0 1 and 1 2, which are the neighbours'.
+//!        ╲ ╲            │          The fan around 1 has the triangles 1 2 3 and 1 3 0, which cover just the polygon.
 //!            ──── 2 ────┘
 //! ```
 //!
-//! Where no vertex will do, because sides cross or because the polygon is no fan any more, it is **folded**:
+//! Sometimes no vertex will do: sides cross, or no vertex sees all others any more. Then the polygon is **folded**:
 //!
 //! ```text
-//!   0 ─────────────── 3            0 1 and 2 3 cross, and beyond that the polygon shows its other side. Both are edges that
-//!      ╲           ╱               neighbours have too, with the same rounded ends, so the neighbours overlap there. Each of the
-//!          ╲   ╱                   triangles 0 1 2 and 0 2 3 covers a part of what is theirs; there the two have different
-//!            ╳                     senses.
+//!   0 ─────────────── 3            0 1 and 2 3 cross, and beyond the crossing the polygon shows its back. Neighbours have
+//!      ╲           ╱               these edges too, with the same rounded ends, and overlap there. The triangles 0 1 2 and
+//!          ╲   ╱                   0 2 3 have opposite windings, and each covers some pixels that are the neighbours'.
+//!            ╳
 //!         2 ─── 1
 //! ```
 //!
-//! What is right follows from the outline alone. Walked once around, it goes around a pixel's centre n times: clockwise counts
-//! +1, counter-clockwise −1, and a centre on an edge is on the side that the top-left rule says. Of two triangles that share an edge the
-//! one walks it up and the other down, so that over all triangles of a mesh these numbers add up to what they would be without
-//! rounding: that is what no crack and no double pixel mean for a mesh, and what a triangle that is not clipped does, whose number is
-//! 1 or 0 (or −1, turned over by rounding, and is then culled). **A clipped triangle therefore draws a pixel where its
-//! outline goes around it in the sense that is not culled, and once.** (Clipping leaves a convex polygon, from whose topmost corner the two
-//! sides go down only. Rounding keeps that, so a row meets each side once: n is never 2.)
+//! # Which pixels a folded polygon draws
 //!
-//! The numbers of a fan's triangles add up to n, whatever the polygon. So where all have one sense each draws what it covers.
-//! In a folded one a triangle draws, of what it covers, the pixels where the sum has its own sense, and that no earlier one drew:
-//! `raster::folded` finds them row by row. That takes a while, and is rare: what folds is thinner than 1/8 px.
+//! Its outline says. Let n be the outline's winding number around a pixel's centre: clockwise turns count +1,
+//! counter-clockwise ones −1. A centre on an edge counts to the side that the top-left rule gives it to. Two triangles of a
+//! mesh walk the edge that they share in opposite directions, so it cancels in the sum of n over the mesh, wherever rounding
+//! took its ends. If every triangle draws what its n says there are neither cracks nor double pixels. A triangle that is not
+//! clipped does so: its n is 1 or 0, or −1 if rounding turned it over, and then it is culled. **So a clipped triangle draws a
+//! pixel, once, if its outline goes around that in the direction that is not culled.** (It never goes around more than once:
+//! from the topmost corner of a convex polygon two chains of sides lead down only. Rounding keeps them so, and a row meets
+//! each of them once.)
+//!
+//! The numbers of a fan's triangles always add up to n. If they have one winding each triangle draws what it covers. If not,
+//! `raster::folded` finds row by row what each draws. That is slow, and rare: only what is thinner than 1/8 px can fold.
 
 use super::screen::ScreenVertex;
 
-/// The vertex around which no triangle is turned over, or the least of them, and whether any is: whether the polygon is folded.
+/// The vertex around which no triangle of the fan is turned over, or the least area is; and whether any area is, so that the
+/// polygon is folded.
 #[inline(never)]
 pub(super) fn center(polygon: &[ScreenVertex]) -> (usize, bool) {
     let mut best = (u64::MAX, 0);
@@ -57,7 +60,8 @@ pub(super) fn center(polygon: &[ScreenVertex]) -> (usize, bool) {
     (best.1, best.0 > 0)
 }
 
-/// Twice the area, in 1/256 px², of the triangles around a vertex that run the other way than the polygon.
+/// Twice the area, in 1/256 px², of those triangles of the fan around a vertex whose winding is not that of the whole
+/// polygon. The signed areas add up to that of the polygon, the unsigned ones to that and twice what is turned over.
 #[inline(never)]
 fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
     let (before, from) = polygon.split_at(first);
@@ -76,7 +80,7 @@ fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
     (size - sum.unsigned_abs()) / 2
 }
 
-/// The corners of the fan's triangle number 0 … corners − 3.
+/// The corners of a triangle of the fan around the first vertex; `number` is 0 … corners − 3. `None` beyond that.
 #[inline]
 pub(crate) fn piece(polygon: &[ScreenVertex], number: usize) -> Option<[&ScreenVertex; 3]> {
     let (first, rest) = polygon.split_first()?;

@@ -1,4 +1,12 @@
-//! Poses one after the other, and the pose that undoes one.
+//! Composition of poses, and the inverse of a pose.
+//!
+//! - In: one pose or two, with any numbers in their fields.
+//! - Out: a pose, its elements rounded to their formats and saturated where they are too large.
+//! - Assumes: nothing.
+//!
+//! A pose takes p to R·S·p + t: scales S along the axes of the mesh, then a matrix R, then a translation t. The product of
+//! two such maps, and the inverse of one, is again a matrix M and a translation, but M is seldom scales and then a rotation.
+//! So R may be any matrix with columns of length 1: every M is such an R times S, the lengths of M's own columns.
 
 use super::matrix::{bits, column_of, dot, round14, saturated};
 use super::scale::{product, quotient, scale_of_bits};
@@ -8,19 +16,19 @@ use crate::num::{I2F14, U10F22, shift_round, wide};
 use core::ops::Mul;
 
 impl Pose {
-    /// This pose first, then `outer`; as an operator `outer * self`.
+    /// The composition of two poses: this one first, then `outer`. As an operator it is `outer * self`.
     ///
-    /// A child's pose in its parent, then the parent's in the world, is the child's in the world: for every pair of poses, but for
-    /// rounding.
+    /// If `self` is a child's pose in its parent and `outer` the parent's in the world, the result is the child's in the
+    /// world. That holds for every pair of poses, but for rounding.
     ///
-    /// If `outer` has one scale for all axes, each element, each scale and each coordinate are rounded once, and saturate. The
-    /// result's rotation is a rotation if both are.
+    /// If `outer` has the same scale along all axes, each element, scale and coordinate is rounded once, and saturates. The
+    /// result's `rotation` is a rotation if both are.
     ///
-    /// If not, a child that is turned in its parent is sheared by the parent's stretch (but where it is turned by quarters
-    /// about the axes): no scales and no rotation make that. The result then has the sheared axes in its `rotation`, as
-    /// columns of length 1 that are not at right angles, and their lengths, within 2⁻²⁷ of themselves and a bit, in its `scale`.
-    /// It draws, lights, transforms, composes and inverts as exactly as any other, as far as its elements of 14 bits tell columns
-    /// from each other; what asks for [the rotation itself](Pose::quaternion) gets the nearest.
+    /// If its scales differ, they shear a child that is turned in its parent (except by quarter turns about the axes). No
+    /// scales followed by a rotation do that. The result's `rotation` then is none: its columns are the sheared axes, of
+    /// length 1 but not at right angles. Its `scale` has their lengths, within 2⁻²⁷ of themselves and one
+    /// last bit. Such a pose draws, lights, transforms, composes and inverts as exactly as any other, as long as its columns
+    /// differ by enough of their 14 fraction bits. [`Pose::quaternion`] gives the nearest rotation.
     #[must_use]
     pub const fn then(self, outer: Self) -> Self {
         let (mut rotation, mut scale) = (outer.rotation, self.scale);
@@ -29,12 +37,14 @@ impl Pose {
         let mut column = 0;
         while column < 3 {
             let axis = column_of(&self.rotation, column);
-            // 36 fraction bits, below 2⁴⁸.
+            // A column of S_outer·R: 36 fraction bits, below 2⁴⁸.
             let stretched = [
                 axis[0] as i64 * stretch[0] as i64,
                 axis[1] as i64 * stretch[1] as i64,
                 axis[2] as i64 * stretch[2] as i64,
             ];
+            // The column's direction, how many fraction bits that has, and its length with 22: as they are if the scales are
+            // one, since then the length is the scale.
             let (axis, fraction_bits, by) = match normalized(stretched) {
                 Some(axis) if !is_even => (axis, 30, shift_round(length(stretched) as i64, 14) as u64),
                 _ => (axis, 14, if is_even { stretch[0] as u64 } else { 0 }),
@@ -50,17 +60,18 @@ impl Pose {
         Self { rotation, scale, translation: outer.transform_point(self.translation) }
     }
 
-    /// The pose that undoes this one, as far as formats go.
+    /// The pose that undoes this one, as far as the formats allow.
     ///
-    /// Of a pose that keeps angles (one scale for all axes, and a rotation) it is the rotation transposed, the scale's
-    /// reciprocal, and the translation that takes this one's back to the origin.
-    /// Together they turn by less than 2.3 · 2⁻¹⁴ per element. The reciprocal is rounded to 2⁻²² (for a
-    /// scale of 1000 that is 2⁻¹³ of it) and saturates for scales below 2⁻¹⁰, also for 0,
-    /// which has no inverse; the translation saturates where it is beyond ±32768.
+    /// For a pose that keeps angles (the same scale along all axes, and a rotation or reflection) it has the transposed
+    /// matrix, the reciprocal of the scale, and the translation that takes this pose's back to the origin.
+    /// The product of both matrices differs from the identity by less than 2.3 · 2⁻¹⁴ per element. The reciprocal is rounded
+    /// to 2⁻²² (for a scale of 1000 that is 2⁻¹³ of it). It saturates for scales below 2⁻¹⁰, and for 0, which has no inverse.
+    /// The translation saturates beyond ±32768.
     ///
-    /// Of any other it is the inverse matrix, as [`Pose::then`] has it: columns of length 1, each element within 0.501 · 2⁻¹⁴, in
-    /// `rotation`, which is none if axes of different scales were turned; their lengths within 2⁻²⁷ of themselves and a bit in
-    /// `scale`. What has no inverse (a scale of 0, a matrix that is flat) or one too large gets the largest scale.
+    /// For any other pose it is the inverse matrix in the form that [`Pose::then`] describes. `rotation` has its columns, of
+    /// length 1, each element within 0.501 · 2⁻¹⁴; it is no rotation if axes of different scales were turned. `scale` has the
+    /// lengths of the columns, within 2⁻²⁷ of themselves and one last bit. A pose without inverse (a scale is
+    /// 0, or the matrix is flat) gets the largest scale, as does one whose inverse is too large.
     #[must_use]
     pub const fn inverse(self) -> Self {
         let (rotation, scale) =
@@ -70,7 +81,7 @@ impl Pose {
         Self { translation: saturated([-x, -y, -z]), ..back }
     }
 
-    /// The inverse's rotation and scale, if this is a rotation and one scale.
+    /// The inverse's rotation and scale, for a pose that keeps angles.
     const fn transposed(&self) -> ([[I2F14; 3]; 3], [U10F22; 3]) {
         let mut rotation = self.rotation;
         let mut i = 0;
@@ -86,11 +97,12 @@ impl Pose {
         (rotation, [scale_of_bits(reciprocal); 3])
     }
 
-    /// The inverse's rotation and scale: rows of cofactors as columns, divided by the determinant, and each row by a scale.
+    /// The inverse's rotation and scale, for any pose: S⁻¹·R⁻¹, where R⁻¹ = cof(R)ᵀ/det(R). So column j has the elements
+    /// cof(R)ⱼᵢ / (scaleᵢ · det(R)).
     const fn inverse_of_any_matrix(&self) -> ([[I2F14; 3]; 3], [U10F22; 3]) {
         let cofactors = self.cofactors();
         let determinant = dot(bits(self.rotation[0]), cofactors[0]); // 42 fraction bits, below 2⁴⁸
-        // 2⁴⁰ times reciprocals are 31 bits times 2^(33 − zeros).
+        // 1/scale = reciprocals · 2^(33 − zeros) / 2⁴⁰, each of 31 bits. A scale of 0 counts as 2⁻²².
         let (mut reciprocals, mut zeros) = ([0i32; 3], [0u32; 3]);
         let mut i = 0;
         while i < 3 {
@@ -103,7 +115,8 @@ impl Pose {
         let (mut rotation, mut scale) = (self.rotation, self.scale);
         let mut column = 0;
         while column < 3 {
-            // Below 2⁶², in the largest unit of those that are not 0.
+            // cof(R)ⱼᵢ/scaleᵢ, below 2⁶². Each has a unit of its own, 2^−zeros; all are shifted to the largest one, that of
+            // the least zeros.
             let (mut v, mut unit) = ([0; 3], 33);
             i = 0;
             while i < 3 {
@@ -116,7 +129,8 @@ impl Pose {
                 v[i] >>= if v[i] != 0 { zeros[i] - unit } else { 0 };
                 i += 1;
             }
-            // The column is v · 2^(7 − unit) / determinant.
+            // The column is v · 2^(7 − unit) / determinant, both as integers: 28 fraction bits of v's cofactors and 40 − 33 +
+            // `unit` of its reciprocals, against 42 of the determinant.
             let axis = match normalized(v) {
                 Some(axis) => axis,
                 None => [0; 3],
@@ -134,7 +148,7 @@ impl Pose {
     }
 }
 
-/// The right one first: `parent * child` is `child.then(parent)`.
+/// Composition, the right one first: `parent * child` is `child.then(parent)`.
 impl Mul for Pose {
     type Output = Self;
     fn mul(self, child: Self) -> Self {

@@ -1,15 +1,20 @@
-//! Folded polygons: which runs of pixels a clipped polygon draws that rounding has folded.
+//! Folded polygons: which pixels a clipped polygon draws if rounding has folded it.
 //!
-//! - In: the corners of a folded polygon, see `geometry::fan`, and a window.
-//! - Out: parts of rows, one after the other, and the triangle of the fan that is drawn there.
+//! - In: the corners of a folded polygon (see `geometry::fan`), and a window.
+//! - Out: runs of pixels, row by row; with each run the triangle of the polygon's fan that draws it.
 //! - Assumes: the corners lie in the guard band.
+//!
+//! Each triangle of the fan goes around the pixels that it covers, clockwise (+1) or counter-clockwise (−1). The sum over the
+//! triangles is how often the polygon's outline goes around a pixel. A triangle draws a pixel that it covers if the sum has
+//! the triangle's own sign and no earlier triangle of that sign covers it. So each pixel is drawn at most once. Triangles of
+//! either sign come out: culling is left to whoever draws them.
 
 use super::rows::centers_left;
 use crate::frame::{Window, first_center};
 use crate::geometry::{MOST_CORNERS, ScreenVertex, piece, position};
 use core::ops::Range;
 
-/// The rows of a folded polygon within a window's.
+/// The rows of a window in which a folded polygon has pixel centres.
 #[cold]
 #[inline(never)]
 pub(crate) fn rows_of_folded(polygon: &[ScreenVertex], window: &Window) -> Range<i32> {
@@ -18,16 +23,19 @@ pub(crate) fn rows_of_folded(polygon: &[ScreenVertex], window: &Window) -> Range
     first_center(low).max(window.rows.start)..first_center(high).min(window.rows.end)
 }
 
-/// Where in a window a triangle of a folded polygon's fan is drawn: one part of one row after the other.
+/// The runs of a folded polygon in a window, one after another: row by row, in a row triangle by triangle, and each from left
+/// to right.
 pub(crate) struct Runs<'a> {
     polygon: &'a [ScreenVertex],
+    /// The current triangle of the fan.
     number: usize,
     window: Window,
+    /// The current row, and those still to come.
     rows: Range<i32>,
-    /// In the row above: of each triangle how many pixel centres lie left of the edge that goes up, and of the one that goes down.
-    /// Between them lie those that the triangle goes around, clockwise if the first is the less.
+    /// For each triangle of the fan, in the current row: how many pixel centres lie left of its edge that goes up, and of the
+    /// one that goes down. The triangle covers the centres between these two columns. It runs clockwise if the first is less.
     sides: [[i32; 2]; MOST_CORNERS - 2],
-    /// The column that is next in it.
+    /// The column in which the current triangle continues.
     column: i32,
 }
 
@@ -47,7 +55,7 @@ impl<'a> Runs<'a> {
         runs
     }
 
-    /// The next run, as a window, and the corners of the triangle that is drawn there.
+    /// The next run, as a window, and the corners of the triangle that draws it.
     #[cold]
     #[inline(never)]
     pub(crate) fn next(&mut self) -> Option<(Window, [&'a ScreenVertex; 3])> {
@@ -60,6 +68,7 @@ impl<'a> Runs<'a> {
             let sides = self.sides.get(..self.polygon.len() - 2)?;
             let &[up, down] = sides.get(self.number)?;
             let (start, mut end) = (self.column.max(up.min(down)), up.max(down).min(self.window.columns.end));
+            // Nothing is left of the triangle in this row: on to the next one, or to the next row.
             if start >= end {
                 self.number += 1;
                 self.column = self.window.columns.start;
@@ -70,6 +79,8 @@ impl<'a> Runs<'a> {
                 }
                 continue;
             }
+            // Up to `end` the same triangles cover all pixels: it is moved to the left where one of them begins or ends
+            // before. `around` is their sum; `is_first` says that none with a lower number has the sign of this one.
             let (mut around, mut is_first) = (0, true);
             for (i, &[left, right]) in sides.iter().enumerate() {
                 let (first, behind) = (left.min(right), left.max(right));
@@ -88,6 +99,7 @@ impl<'a> Runs<'a> {
         }
     }
 
+    /// Sets `sides` of a triangle in the current row.
     #[inline(never)]
     fn set_sides(&mut self, number: usize, corners: [&ScreenVertex; 3]) {
         if let Some(sides) = self.sides.get_mut(number) {
@@ -95,6 +107,7 @@ impl<'a> Runs<'a> {
         }
     }
 
+    /// Sets `sides` of all triangles in the current row, and begins at its left end.
     #[inline(never)]
     fn start_row(&mut self) {
         self.column = self.window.columns.start;
@@ -106,7 +119,8 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// How many centres of a row lie left of the edge of a triangle that crosses it upwards, or downwards; 0 if none does.
+/// How many pixel centres of a row lie left of the edge of a triangle that crosses the row upwards, or downwards. 0 if none
+/// does: then there is none in the other direction either.
 #[inline(never)]
 fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
     let [a, b, c] = corners.map(position);
@@ -134,8 +148,8 @@ mod tests {
         places.iter().map(place).collect()
     }
 
-    /// How often a polygon goes around a pixel's centre, clockwise, by the edges that cross the row left of it; and the centres on
-    /// edges as if they lay a little further to the right, and less down.
+    /// How often a polygon goes around a pixel's centre, clockwise, by the edges that cross the row left of it; and the
+    /// centres on edges as if they lay a little further to the right, and less down.
     fn winding(places: &[[i16; 2]], x: i32, y: i32) -> i32 {
         let next = places.iter().cycle().skip(1);
         let edges = places.iter().zip(next).map(|(a, b)| [a, b].map(|place| place.map(i64::from)));

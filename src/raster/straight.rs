@@ -1,47 +1,68 @@
-//! Which triangles are straight: those whose attributes count as linear on the screen.
+//! Straight triangles: those whose attributes may be interpolated linearly on the screen, without a division by q.
 //!
-//! - In: the edges of a triangle, and q and attributes at its corners.
-//! - Out: whether linear interpolation is exact enough, or by how much it has to bend.
-//! - Assumes: q differs by less than a quarter of the least.
+//! - In: the edges of a triangle and q at its corners; to ask for one attribute, also how that changes along the edges.
+//! - Out: whether linear interpolation is exact enough; else the numbers of which [`small`](super::small) makes a quadratic.
+//! - Assumes: corner 0 is the nearest, so its q is the greatest.
 //!
-//! Linear interpolation and the exact one differ by the covariance of u and q under the weights α, divided by q:
+//! Where q varies by a quarter of its least value or more, a triangle never counts as straight (except in
+//! [`Affine`](crate::Affine), where all do).
+//!
+//! # The error of linear interpolation
+//!
+//! Let α be the barycentric weights of a pixel. Linear interpolation gives Σ αᵢuᵢ. Exact is Σ αᵢuᵢqᵢ / q, with q = Σ αᵢqᵢ.
+//! The two differ by the covariance of u and q under the weights α, divided by q:
 //!
 //! ```text
-//! u_exact − u_linear = (Σ αᵢαⱼ·Δuᵢⱼ·Δqᵢⱼ) / q,   over the edges ij
+//! u_exact − u_linear = (Σ αᵢαⱼ·Δuᵢⱼ·Δqᵢⱼ) / q,   summed over the three edges ij
 //! ```
 //!
-//! That is at most ¼·max |Δuᵢⱼ·Δqᵢⱼ| / q_min: if all three products have one sign, u and q rise together, the largest is that of
-//! the whole range, and a covariance is at most a quarter of the product of the ranges; else the two of one sign share a
-//! corner i, and αᵢ(1 − αᵢ) ≤ ¼. To be pixels it is divided by the change of u over a pixel, which on each edge is at least
-//! |Δuᵢⱼ| / (|Δxᵢⱼ| + |Δyᵢⱼ|), and counts as at least 1 texel or 1/255.
+//! The sum is at most ¼·max |Δuᵢⱼ·Δqᵢⱼ|:
+//!
+//! - If no two of the three products have opposite signs, u and q put the corners in the same order, or in opposite ones. The
+//!   largest product is then that of the two ranges, and no covariance exceeds a quarter of that.
+//! - Else two products have one sign and the third has the other. Those two edges share a corner i, so their sum is at most
+//!   αᵢ(1 − αᵢ) ≤ ¼ of the larger. The third is weighted with at most ¼, and takes away from that sum.
+//!
+//! In pixels the error is that divided by M, the largest change of u over one pixel to the right or down. Along an edge
+//! |Δuᵢⱼ| ≤ M·(|Δxᵢⱼ| + |Δyᵢⱼ|). So u cancels, and one bound holds for all attributes:
+//!
+//! ```text
+//! error ≤ ¼ · max (|Δxᵢⱼ| + |Δyᵢⱼ|) · |Δqᵢⱼ|/q_min   pixels
+//! ```
+//!
+//! Here |Δqᵢⱼ|/q_min is called the *fall* of an edge. For a single attribute M counts as at least one texel, or one of 255
+//! levels of a colour: what is off by less does not show.
 
 use crate::math::recip::short_of;
 use crate::num::mul_16;
 
-/// Which triangles are straight in some quality.
+/// Which triangles a quality draws as straight ones.
 #[derive(Clone, Copy, Debug)]
 pub enum Straight {
     /// All.
     Always,
-    /// Those with 4 · error ≤ this, in pixels of 16 fraction bits, where distances differ by less than a quarter.
+    /// Those with 4 · error ≤ this, in pixels with 16 fraction bits, at most 1.0.
     Below(u32),
 }
 
-/// What the error of linear interpolation depends on, but for the attribute.
+/// What the error of linear interpolation depends on, apart from the attribute. The edges are 01, 02 and 12, in this order.
 pub(crate) struct Bend {
-    /// |Δx| + |Δy| of the edges 01, 02, 12 in 1/16 px, below 2¹⁷.
+    /// |Δx| + |Δy| of each edge in 1/16 px, below 2¹⁶.
     lengths: [u32; 3],
-    /// |Δq|/q_min along them, 16 fraction bits, below ¼.
+    /// |Δq|/q_min of each edge, 16 fraction bits, rounded up from less than ¼.
     falls: [u32; 3],
-    /// 1/q_min = `reciprocal` · 2^(`zeros` − 48).
+    /// 1/q_min = `reciprocal` · 2^(`zeros` − 48); 2¹⁶ … 2¹⁷.
     reciprocal: u32,
+    /// The leading zeros of q_min.
     zeros: u32,
 }
 
 impl Bend {
-    /// From the edges as [`edges`](super::setup::edges) has them and q at the corners, below 2³¹, the first being the greatest,
-    /// and the least.
-    /// `None` if distances differ by a quarter.
+    /// From the edges as [`edges`](super::triangle::edges) has them, q at the corners, below 2³¹, and the least of these.
+    /// `None` if q varies by a quarter of the least or more.
+    ///
+    /// Entry 0 of `across` and `down` is the gradient of corner 1's weight. That is made of the differences of the opposite
+    /// edge, 02. Likewise entry 1 has those of edge 01, and the sum of both is edge 12.
     #[inline]
     pub(crate) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], least: u32) -> Option<Self> {
         if q0 - least >= least >> 2 {
@@ -55,7 +76,7 @@ impl Bend {
                 length(across[0], down[0]),
                 length(across[0] + across[1], down[0] + down[1]),
             ],
-            // Rounded up; falls are less than a quarter: at most 2¹⁴ times 2¹⁷.
+            // 14 bits of Δq times 17 bits of the reciprocal.
             falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
                 .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
             reciprocal,
@@ -63,8 +84,11 @@ impl Bend {
         })
     }
 
-    /// As [`Bend::new`] and [`Bend::is_straight`], without a division: it finds most of those that are, where q falls by less than
-    /// 2²⁷ and edges are shorter than 2¹².
+    /// A quick test that saves [`Bend::new`]: true only where linear interpolation will do for any attribute, and for most
+    /// such triangles. Parameters as in `new`, and the limit; q varies by less than 2²⁷, and |Δx| + |Δy| of all edges is
+    /// below 2¹² sixteenths.
+    ///
+    /// length · Δq/q_min ≤ limit is tested as length · Δq ≤ limit · q_min, with Δq rounded up and q_min down.
     #[inline(always)]
     pub(crate) fn is_needless(
         [across, down]: &[[i32; 2]; 2],
@@ -72,10 +96,10 @@ impl Bend {
         least: u32,
         limit: u32,
     ) -> bool {
-        // 15 bits times 16; 12 times 15 and a bit. Falls are rounded up.
         if q0 - least >= least >> 2 {
             return false;
         }
+        // Both sides in 1/16 px · 2¹² units of q. This one: 15 bits times 16. The other one: 12 bits times 15 and a bit.
         let most = ((least >> 16) * limit) >> 8;
         let is_short =
             |x: i32, y: i32, fall: u32| (x.unsigned_abs() + y.unsigned_abs()) * ((fall >> 12) + 1) <= most;
@@ -84,48 +108,57 @@ impl Bend {
             && is_short(across[0] + across[1], down[0] + down[1], q1.abs_diff(q2))
     }
 
-    /// Whether all attributes are straight.
+    /// Whether linear interpolation will do for any attribute: 4 · error ≤ `limit`, which has 16 fraction bits.
     #[inline]
     pub(crate) fn is_straight(&self, limit: u32) -> bool {
-        // 2¹⁷ · 2¹⁴, in 1/16 px.
+        // In 1/16 px with 16 fraction bits: 2¹⁶ · 2¹⁴ at most.
         self.lengths.iter().zip(self.falls).all(|(length, fall)| length * fall <= limit << 4)
     }
 
-    /// Whether an attribute is that rises so from corner 0 to 1 and 2, by less than 2²⁸; an error of `unit` is one pixel's at
-    /// most. The edges are shorter than 2¹².
+    /// Whether linear interpolation will do for one attribute: more exact than [`Bend::is_straight`], which has to be right
+    /// for all.
+    ///
+    /// `rise` is its change from corner 0 to corners 1 and 2, I16F16, below 2²⁷. `unit` is one texel or one level of a colour
+    /// in I16F16, which M counts as at least. |Δx| + |Δy| of all edges is below 2¹² sixteenths.
     #[inline]
     pub(crate) fn is_straight_for(&self, limit: u32, rise: [i32; 2], unit: u32) -> bool {
         let rises = [rise[0], rise[1], rise[1] - rise[0]].map(i32::unsigned_abs);
-        // 4 · error, at most a quarter of a rise.
+        // 4 · error as a difference of u: the largest |Δu| · fall, so at most a quarter of a rise. Then 8 fraction bits,
+        // rounded up.
         let error = (0..3).fold(0, |all, i| all.max(mul_16(rises[i] as i32, self.falls[i]))) as u32;
         let error = (error >> 8) + 1;
         let range = rises[0].max(rises[1]).max(rises[2]) as i32;
-        // Elsewhere u may change that much less along an edge.
+        // The exact u changes by (Δu·q̄ + (ū − u)·Δq) / q per length of an edge, where q̄ and ū are the means of its ends.
+        // The error is divided by the same q, so that cancels; the rest is at least (|Δu| − range · fall) · q_min.
         let least = |i: usize| rises[i].saturating_sub(mul_16(range, self.falls[i]) as u32);
         error <= ((unit >> 8) * (limit >> 8)) >> 8
             || (0..3).any(|i| error * self.lengths[i] <= ((least(i) >> 8) * (limit >> 8)) >> 4)
     }
 
-    /// |Δq| from corner 0 to 1 or 2 by the middle of the least and the greatest q, 16 fraction bits.
+    /// |Δq| from corner 0 to corner `i` + 1, divided by q_mid = (q_min + q_max)/2; 16 fraction bits.
     #[inline]
     pub(crate) fn fall(&self, i: usize) -> u32 {
         (self.falls[i] * self.to_middle()) >> 15
     }
 
-    /// q_min by the middle of the least and the greatest, 15 fraction bits, nearly.
+    /// q_min/q_mid with 15 fraction bits: 1/(1 + f/2) ≈ 1 − f/2, f being the larger fall from corner 0. At most 1/64 too
+    /// small.
     #[inline]
     fn to_middle(&self) -> u32 {
         (1 << 15) - (self.falls[0].max(self.falls[1]) >> 2)
     }
 
-    /// By how much of the middle of the least and the greatest q it changes a column and a row, 16 fraction bits. `None` where a
-    /// quadratic would not do.
+    /// From the change of q per column and per row: the same divided by q_mid, 16 fraction bits, within ±¼. `None` where a
+    /// quadratic is not exact enough, or where q changes by more than a quarter of q_min per pixel (for some q_min, an
+    /// eighth).
     #[inline]
     pub(crate) fn slopes(&self, steps: [i32; 2]) -> Option<[i32; 2]> {
         let most = self.falls[0].max(self.falls[1]);
-        // In 1/16 px. Of the longest edge: along that u changes the most.
+        // The quadratic is off by length · fall²/8 (see `small`). That has to be 3/32 pixel at most: length · fall² ≤ 3/4
+        // pixel, in 1/16 px with 16 fraction bits. Any edge may be the one that counts: so the longest with the largest fall.
         let longest = self.lengths[0].max(self.lengths[1]).max(self.lengths[2]);
         let is_exact = longest * ((most * most) >> 16) <= 12 << 16;
+        // At most q_min, so that a quarter of it leaves `step << zeros` within ±2²⁹.
         let least = (1u32 << 31) >> self.zeros;
         if !is_exact || steps.iter().any(|step| step.unsigned_abs() > least >> 2) {
             return None;

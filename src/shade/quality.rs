@@ -8,19 +8,19 @@ use crate::raster::Straight;
 /// The error is measured in pixels on the screen: the error of an attribute, divided by
 /// its largest change over one pixel step (at least 1 texel or 1/255).
 pub trait Quality: sealed::Sealed {
-    /// Which triangles' attributes count as linear on the screen, without any division.
+    /// Which triangles' attributes count as linear on the screen.
     #[doc(hidden)]
     const STRAIGHT: Straight;
-    /// Whether it takes place at every pixel.
+    /// Whether perspective is exact at every pixel.
     #[doc(hidden)]
     const EVERY_PIXEL: bool;
 }
 
-/// A division at every pixel: an error of at most 0.02 pixel.
+/// One step of Newton's iteration at every pixel: an error of at most 0.02 pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact;
 
-/// Divisions as far apart as an error of ¼ pixel allows: the default.
+/// A reciprocal from a table, at every pixel or as far apart as an error of ¼ pixel allows: the default.
 #[derive(Clone, Copy, Debug)]
 pub struct QuarterPixel;
 
