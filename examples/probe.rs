@@ -355,16 +355,26 @@ impl<const NEARER_WINS: bool> DepthFormat for Counting<NEARER_WINS> {
     type Word = Met;
     const CLEAR: Met = Met { count: 0, depth: 0, q: 0 };
 
-    fn test(stored: &mut Met, near_w: U1F31) -> bool {
+    fn test(stored: &Met, near_w: U1F31) -> bool {
+        !NEARER_WINS || depth(near_w) > stored.depth
+    }
+
+    fn store(stored: &mut Met, near_w: U1F31) {
+        (stored.depth, stored.q) = (depth(near_w), near_w.to_bits());
+    }
+
+    fn test_and_store(stored: &mut Met, near_w: U1F31) -> bool {
         stored.count = stored.count.saturating_add(1);
-        let q = near_w.to_bits();
-        let depth = ((q >> 15) as u16).max(1);
-        let visible = !NEARER_WINS || depth > stored.depth;
+        let visible = Self::test(stored, near_w);
         if visible {
-            (stored.depth, stored.q) = (depth, q);
+            Self::store(stored, near_w);
         }
         visible
     }
+}
+
+fn depth(near_w: U1F31) -> u16 {
+    ((near_w.to_bits() >> 15) as u16).max(1)
 }
 
 /// A texture whose texels are their coordinates. Spans are drawn by the trait's own method: the loops of materials.

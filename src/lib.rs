@@ -66,9 +66,9 @@
 //!    │
 //!  geometry   transform ─▶ ClipVertex ─▶ clip, cut ─▶ ScreenVertex ─▶ orient, cull
 //!    │
-//!  raster     set-up ─▶ TriangleSetup ─▶ rows ─▶ Span ─▶ depth
+//!  raster     set-up ─▶ TriangleSetup ─▶ rows ─▶ depth
 //!    │
-//!  shade      Run ─▶ walk, fill ─▶ words of pixels
+//!  shade      Curve ─▶ fill ─▶ words of pixels
 //!    │
 //!  frame      a Band of rows, which goes to the display
 //! ```
@@ -80,9 +80,9 @@
 //!   itself is not.
 //! - **rows** finds the first and the last covered pixel of each row exactly, from the edge functions of the triangle (signed
 //!   areas: divided by the triangle's own they are the barycentric weights). There is no coverage test per pixel.
-//! - **walk** divides by a table of reciprocals, at every pixel or only as often as ¼ pixel asks for; between two
-//!   divisions attributes follow the quadratic that has both ends and the slopes there. A small triangle is drawn at one go,
-//!   without any division: its attributes are linear on the screen, or one quadratic.
+//! - **perspective** takes one division for each run of visible pixels. From there an attribute is A + B/w, and 1/w comes from a table of
+//!   1024 reciprocals: at every pixel, or at every eighth where it changes little. A small triangle is drawn at one go, without any
+//!   division: its attributes are linear on the screen, or one quadratic. [`pixel`] tells it step by step.
 //!
 //! `draw` joins them. A [`DisplayList`] cuts this in two behind **geometry**: it keeps the screen vertices and the triangles that are
 //! seen, each vertex transformed and lit once, and sends them through the rest as often as there are bands.
@@ -132,6 +132,9 @@ extern crate std;
 #[doc = include_str!("cost.md")]
 pub mod cost {}
 
+#[doc = include_str!("pixel.md")]
+pub mod pixel {}
+
 mod draw;
 mod frame;
 mod geometry;
@@ -155,7 +158,7 @@ pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use scene::{
     Camera, LensError, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, PlaneError, Texture,
-    TextureError, Vertex, VertexError, Wrap, shapes, texels,
+    TextureError, Vertex, VertexError, shapes, texels,
 };
 pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
 
@@ -163,7 +166,7 @@ pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, 
 pub mod prelude {
     pub use crate::{
         Band, Camera, Cull, Depth16, DisplayList, Light, Lights, Material, Mesh, NoDepth, Pose, Quaternion,
-        Texture, Turn, Vec3, Vertex, Wrap, texels,
+        Texture, Turn, Vec3, Vertex, texels,
     };
 }
 

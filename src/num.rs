@@ -22,7 +22,8 @@ pub use fixed::types::{I2F14, I2F30, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 ///
 /// No stable `cfg` names Armv6-M; of the Arm targets it is the one without atomic swaps. `RUSTFLAGS="--cfg fixel_armv6m"` asks for
 /// the same arithmetic on any other machine, so that the tests can hold it there.
-const IS_ARMV6M: bool = cfg!(any(fixel_armv6m, all(target_arch = "arm", not(target_has_atomic = "32"))));
+pub(crate) const IS_ARMV6M: bool =
+    cfg!(any(fixel_armv6m, all(target_arch = "arm", not(target_has_atomic = "32"))));
 
 /// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
 ///
@@ -113,6 +114,22 @@ pub(crate) const fn mul_long(a: i64, b: i32) -> i64 {
 pub(crate) const fn mul_high_short(a: i32, b: u32) -> i32 {
     debug_assert!(b <= 1 << 31);
     mul_16(a, b >> 16) + (((a >> 16) * (b & 0xffff) as i32) >> 16)
+}
+
+/// The upper 32 bits of `a · b`, rounded down, for a `b` of 0 … 2³¹.
+#[inline]
+pub(crate) const fn mul_high(a: i32, b: u32) -> i32 {
+    debug_assert!(b <= 1 << 31);
+    if IS_ARMV6M { mul_high_split(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
+}
+
+#[inline]
+const fn mul_high_split(a: i32, b: u32) -> i32 {
+    let (a_high, a_low) = (a >> 16, a as u32 & 0xffff);
+    let (b_high, b_low) = (b >> 16, b & 0xffff);
+    let middle = a_high * b_low as i32 + ((a_low * b_low) >> 16) as i32;
+    let middle_2 = a_low * b_high + (middle as u32 & 0xffff);
+    a_high * b_high as i32 + (middle >> 16) + (middle_2 >> 16) as i32
 }
 
 /// A `value` other than 0, shifted left until its first bit is set, and how far.
@@ -235,6 +252,18 @@ mod tests {
                 for b in [b, 1 << 31, (1 << 31) - 1, b >> 16] {
                     let below = ((i64::from(a) * i64::from(b)) >> 32) - i64::from(mul_high_short(a, b));
                     prop_assert!((0..=2).contains(&below), "{} · {}: {}", a, b, below);
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 100_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn split_upper_halves_are_exact_in_100_000_cases(a: i32, b in 0u32..=1 << 31) {
+            for a in [a, i32::MIN, i32::MAX, a >> 16] {
+                for b in [b, 1 << 31, (1 << 31) - 1, b >> 16, 0xffff] {
+                    prop_assert_eq!(i64::from(mul_high_split(a, b)), (i64::from(a) * i64::from(b)) >> 32);
                 }
             }
         }

@@ -15,7 +15,7 @@ use fixel::fixed::types::{I2F14, I12F4, I16F16, U1F31, U8F8, U10F22};
 use fixel::{
     Affine, Band, Camera, CornersError, Cull, DisplayList, Exact, Inputs, Material, Mesh, NoDepth,
     PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, ShadedTriangle,
-    Shader, Texture, Textured, Turn, Varying, Vec3, Vertex, Wrap,
+    Shader, Texture, Textured, Turn, Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::{Triangle, UNIT};
@@ -214,7 +214,7 @@ fn a_triangle_is_a_bands_byte_for_byte_800_cases() {
         match kind {
             0 => same_as_band::<Rgb565, _>(&corners, strip, &Material::textured(&small)),
             1 => same_as_band::<Rgb565, _>(&corners, strip, &Textured::new(&large)),
-            2 => same_as_band::<Rgb565, _>(&corners, strip, &Textured::new(&large.wrap(Wrap::Clamp))),
+            2 => same_as_band::<Rgb565, _>(&corners, strip, &Material::clamped(&large)),
             3 => same_as_band::<Rgb565, _>(&corners, strip, &Material::gouraud()),
             4 => same_as_band::<Rgb565, _>(&corners, strip, &Material::gouraud().exact()),
             5 => same_as_band::<Bits, _>(&corners, strip, &ShowU::<QuarterPixel>(PhantomData)),
@@ -560,19 +560,18 @@ fn a_card_in_a_mirror_shows_the_same_side_mirrored() {
 fn a_part_of_a_texture_shows_nothing_of_the_rest_1000_cases() {
     let sides = || (0..64_i32, 1..64_u32).prop_map(|(start, length)| (start, length.min(64 - start as u32)));
     let log2 = 5..9_u32; // packed coordinates with many and with few fraction bits
-    let cases = (corners(), sides(), sides(), log2, any::<bool>());
-    for_all("direct: parts of textures", 1000, cases, |(corners, (x, width), (y, height), log2, clamp)| {
+    let cases = (corners(), sides(), sides(), log2);
+    for_all("direct: parts of textures", 1000, cases, |(corners, (x, width), (y, height), log2)| {
         let corners = unfolded(corners);
         let part = Rectangle::new(Point::new(x, y), Size::new(width, height));
-        // Of a texture of 32 texels some of it lies beyond.
+        // Of a texture of 32 texels some of it lies beyond: there it shows again.
         let side = 1 << log2;
-        let wrapped = |at: i32| if clamp { at.min(side - 1) } else { at % side };
+        let wrapped = |at: i32| at % side;
         let mut texels = vec![0x0000; (side * side) as usize];
         for Point { x, y } in part.points() {
             texels[(wrapped(y) * side + wrapped(x)) as usize] = WHITE;
         }
-        let wrap = if clamp { Wrap::Clamp } else { Wrap::Repeat };
-        let texture = Texture::new(&texels, log2, log2).wrap(wrap);
+        let texture = Texture::new(&texels, log2, log2);
         let image = PerspectiveImage::new(&texture, &corners).expect("within range").part(&part);
         let mut screen = Screen::of(200, 200);
         image.back_part(&texture, &part).draw(&mut screen).expect("patience");

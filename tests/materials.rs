@@ -13,7 +13,7 @@ use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::pixelcolor::raw::RawU16;
 use fixel::{
     Cull, Inputs, Lights, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Texture, TextureError,
-    Varying, Wrap,
+    Varying,
 };
 use proptest::prelude::*;
 use reference::{Corner, Sample, Triangle, UNIT};
@@ -62,12 +62,17 @@ fn tolerated(triangle: &Triangle, exact: &Sample<'_>, attribute: usize, bound: f
     ((value - off).max(f64::from(low)), (value + off).min(f64::from(high)))
 }
 
+fn of_texture<'a>(texture: &Texture<'a>, clamp: bool) -> Material<'a> {
+    if clamp { Material::clamped(texture) } else { Material::textured(texture) }
+}
+
 /// Whether a texel is met between two coordinates.
-fn met(texel: i64, side: i64, wrap: Wrap, (low, high): (f64, f64)) -> bool {
+fn met(texel: i64, side: i64, clamp: bool, (low, high): (f64, f64)) -> bool {
     let (first, last) = ((low / UNIT).floor() as i64, (high / UNIT).floor() as i64);
-    match wrap {
-        Wrap::Repeat => last - first >= side || (first..=last).any(|place| place.rem_euclid(side) == texel),
-        Wrap::Clamp => (first.clamp(0, side - 1)..=last.clamp(0, side - 1)).contains(&texel),
+    if clamp {
+        (first.clamp(0, side - 1)..=last.clamp(0, side - 1)).contains(&texel)
+    } else {
+        last - first >= side || (first..=last).any(|place| place.rem_euclid(side) == texel)
     }
 }
 
@@ -94,7 +99,7 @@ fn fetches_within<Q: Quality>(
     strip: Strip,
     triangle: &Triangle,
     material: &Material<'_, Q>,
-    (axis, log2, wrap, bound): (usize, u32, Wrap, f64),
+    (axis, log2, clamp, bound): (usize, u32, bool, f64),
     mut tells: impl FnMut(f64, f64),
 ) -> Result<(), TestCaseError> {
     for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, material)) {
@@ -104,7 +109,7 @@ fn fetches_within<Q: Quality>(
         }
         let texel = i64::from(drawn.attributes[0]);
         let within = tolerated(triangle, &triangle.at(x, y), axis, bound);
-        let fits = met(texel, 1 << log2, wrap, within);
+        let fits = met(texel, 1 << log2, clamp, within);
         let (low, high) = (within.0 / UNIT, within.1 / UNIT);
         prop_assert!(
             fits,
@@ -135,15 +140,14 @@ fn textured<Q: Quality>(
         (Just(strip), triangle(strip), 0..9_u32, 0..SIZES.len(), prop::bool::weighted(0.3))
     });
     for_all(name, usual, cases, |(strip, triangle, stretch, chart, clamp)| {
-        let wrap = if clamp { Wrap::Clamp } else { Wrap::Repeat };
         let triangle = stretched(triangle, stretch);
         for (attribute, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-            let material = quality(Material::textured(&texture.wrap(wrap)));
+            let material = quality(of_texture(&texture, clamp));
             let tells = |low: f64, high: f64| {
                 fetched.set(fetched.get() + 1);
                 telling.set(telling.get() + u64::from(high - low < f64::from(1 << log2) / 2.0));
             };
-            fetches_within(strip, &triangle, &material, (attribute, log2, wrap, bound), tells)?;
+            fetches_within(strip, &triangle, &material, (attribute, log2, clamp, bound), tells)?;
         }
         Ok(())
     });
@@ -176,7 +180,7 @@ fn a_small_triangle_with_a_large_texture_is_within_the_bound() {
         corner((3, 201), 632_578_662, 58_456),
     ]);
     let (texture, log2) = chart.textures()[0];
-    let at = (0, log2, Wrap::Repeat, 0.25);
+    let at = (0, log2, false, 0.25);
     fetches_within(Strip::new(40, 40, 0), &triangle, &Material::textured(&texture), at, |_, _| ())
         .expect("it is within the bound");
 }
@@ -192,7 +196,7 @@ fn level_rows_of_textures_are_within_the_bound_600_cases() {
         let triangle = Triangle([corner(0, 0, start), corner(0, 4, start), corner(width, 2, end)]);
         let strip = Strip::new(1000, 4, 0);
         let (texture, log2) = charts[chart].textures()[0];
-        let at = |bound| (0, log2, Wrap::Repeat, bound);
+        let at = |bound| (0, log2, false, bound);
         let material = Material::textured(&texture);
         fetches_within(strip, &triangle, &material, at(0.25), |_, _| ())?;
         fetches_within(strip, &triangle, &material.exact(), at(0.02), |_, _| ())
@@ -205,15 +209,16 @@ fn straight_texels<Q: Quality>(
     strip: Strip,
     triangle: &Triangle,
     material: &Material<'_, Q>,
-    (axis, log2, wrap): (usize, u32, Wrap),
+    (axis, log2, clamp): (usize, u32, bool),
     (scale_log2, ahead): (u32, i128),
 ) -> Result<u32, TestCaseError> {
     let side = 1 << log2;
-    let shows = |right: &std::ops::RangeInclusive<i128>, texel: i128| match wrap {
-        Wrap::Repeat => right.clone().take(side as usize).any(|right| right.rem_euclid(side) == texel),
-        Wrap::Clamp => {
-            (*right.start()).clamp(0, side - 1) <= texel && texel <= (*right.end()).clamp(0, side - 1)
+    let shows = |right: &std::ops::RangeInclusive<i128>, texel: i128| {
+        if clamp {
+            return (*right.start()).clamp(0, side - 1) <= texel
+                && texel <= (*right.end()).clamp(0, side - 1);
         }
+        right.clone().take(side as usize).any(|right| right.rem_euclid(side) == texel)
     };
     let mut telling = 0;
     for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, material)) {
@@ -225,13 +230,13 @@ fn straight_texels<Q: Quality>(
         let right = straight.texels(scale_log2, ahead);
         prop_assert!(
             shows(&right, texel),
-            "axis {} at {}, {}: texel {} of {} ({:?}) for {} · 2^{}, which is one of {:?}",
+            "axis {} at {}, {}: texel {} of {} (clamped: {}) for {} · 2^{}, which is one of {:?}",
             axis,
             x,
             y,
             texel,
             side,
-            wrap,
+            clamp,
             straight.value() / UNIT,
             scale_log2,
             right
@@ -286,7 +291,6 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
         let (chart, clamp, scale_log2) = texture;
         // Beyond ±32768 texels coordinates begin anew, which no texture that repeats shows.
         let scale_log2 = if clamp { 0 } else { scale_log2 };
-        let wrap = if clamp { Wrap::Clamp } else { Wrap::Repeat };
         let mut triangle = if !lattice {
             stretched(triangle, stretch)
         } else if let Some(triangle) = on_lattice(&triangle, gradients, starts) {
@@ -295,8 +299,8 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
             return Ok(());
         };
         for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-            let material = Material::textured(&texture.wrap(wrap)).texture_scale(scale_log2 as u8);
-            let by = (axis, log2, wrap);
+            let material = of_texture(&texture, clamp).texture_scale(scale_log2 as u8);
+            let by = (axis, log2, clamp);
             let error = (scale_log2, ahead(&triangle, axis, scale_log2));
             // Full light, grey or not, leaves texels as they are.
             for corner in &mut triangle.0 {
@@ -409,8 +413,7 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
             let halves = halves(corners, diagonal);
             let strip = Strip::new((to[0] as u32).div_ceil(16), (to[1] as u32).div_ceil(16), 0);
             for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-                let texture = texture.wrap(if clamp { Wrap::Clamp } else { Wrap::Repeat });
-                let material = Material::textured(&texture).texture_scale(scale_log2 as u8);
+                let material = of_texture(&texture, clamp).texture_scale(scale_log2 as u8);
                 let side = 1 << log2;
                 let expected: Vec<_> = sprite_texels(&halves, strip, axis, scale_log2)
                     .into_iter()
@@ -537,12 +540,12 @@ fn textured_within_range() {
     let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
     for_all("texels, Affine", 2000, cases, |(strip, triangle)| {
         for (attribute, (texture, log2)) in chart.textures().into_iter().enumerate() {
-            for wrap in [Wrap::Repeat, Wrap::Clamp] {
+            for clamp in [false, true] {
                 let (low, high) = triangle.sampled(attribute);
                 let within = (f64::from(low), f64::from(high));
-                for drawn in draw(strip, &triangle, &Material::textured(&texture.wrap(wrap)).affine()) {
+                for drawn in draw(strip, &triangle, &of_texture(&texture, clamp).affine()) {
                     let texel = i64::from(drawn.attributes[0]);
-                    prop_assert!(!drawn.written || met(texel, 1 << log2, wrap, within));
+                    prop_assert!(!drawn.written || met(texel, 1 << log2, clamp, within));
                 }
             }
         }
@@ -602,13 +605,13 @@ fn pictures_of_4_texels_by_hand() {
     };
     let triangle = Triangle([corner(-20, -20), corner(-20, 40), corner(40, -20)]);
     let strip = Strip::new(5, 1, 1);
-    let fetch = |wrap| {
+    let fetch = |clamp| {
         let (texture, _) = chart.textures()[0];
-        let drawn = draw(strip, &triangle, &Material::textured(&texture.wrap(wrap)));
+        let drawn = draw(strip, &triangle, &of_texture(&texture, clamp));
         drawn.iter().map(|drawn| drawn.attributes[0]).collect::<Vec<_>>()
     };
-    assert_eq!(fetch(Wrap::Repeat), [0, 1, 0, 1, 0]);
-    assert_eq!(fetch(Wrap::Clamp), [0, 1, 1, 1, 1]);
+    assert_eq!(fetch(false), [0, 1, 0, 1, 0]);
+    assert_eq!(fetch(true), [0, 1, 1, 1, 1]);
     let mut record = Record::blank(strip);
     record.record::<fixel::Exact>(&triangle, Cull::Back, fixel::Inputs::Uv);
     let column = record.pixels.iter().map(|drawn| f64::from(drawn.attributes[0]) / UNIT);

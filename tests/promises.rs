@@ -10,6 +10,7 @@ mod band;
 mod bands;
 mod compile;
 mod coverage;
+mod decoded;
 mod depth;
 mod direct;
 mod dma;

@@ -12,7 +12,7 @@ use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 use fixel::{
     Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, DisplayList, Exact, Inputs, Light, Lights,
     Material, Mesh, MeshError, NoDepth, PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel,
-    RangeError, ScreenVertex, Shader, Texture, Turn, Vec3, Vertex, Wrap,
+    RangeError, ScreenVertex, Shader, Texture, Turn, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::{Corner, Triangle};
@@ -235,7 +235,7 @@ fn materials_on_triangles_of_any_bits_10_000_cases() {
             0 => Material::flat(Rgb565::MAGENTA),
             1 => Material::gouraud(),
             2 => Material::textured(&texture),
-            _ => Material::textured(&texture.wrap(Wrap::Clamp)),
+            _ => Material::clamped(&texture),
         };
         match quality {
             0 => on_all_formats(target, &vertices, &material),
@@ -252,14 +252,13 @@ fn small_triangles_are_the_same_in_bands_of_one_row_20_000_cases() {
     let cases = (mesh_case(), 0..6_u8, 0..3_u8, any::<bool>());
     for_all("small triangles in bands", 20_000, cases, |(case, kind, quality, gray)| {
         let texture = Texture::new(&texels[..1 << 12], 6, 6);
-        let clamped = texture.wrap(Wrap::Clamp);
         let material = match kind {
             0 => Material::flat(Rgb565::MAGENTA),
             1 => Material::gouraud(),
             2 => Material::textured(&texture),
-            3 => Material::textured(&clamped),
+            3 => Material::clamped(&texture),
             4 => Material::textured(&texture).lit(&lights),
-            _ => Material::textured(&clamped).lit(&lights),
+            _ => Material::clamped(&texture).lit(&lights),
         };
         let mut vertices = case.triangle.0.map(common::screen_vertex);
         if gray {
@@ -446,7 +445,7 @@ fn meshes_poses_and_cameras_of_any_numbers_20_000_cases() {
                 0 => Material::flat(Rgb565::MAGENTA),
                 1 => Material::gouraud(),
                 2 => Material::textured(&texture),
-                _ => Material::textured(&texture.wrap(Wrap::Clamp)),
+                _ => Material::clamped(&texture),
             }
             .cull(CULLS[cull]);
             let (mut pixels, mut depth) =
@@ -546,14 +545,13 @@ fn triangle_of_any_size() -> BoxedStrategy<((Strip, u32), [ScreenVertex; 3])> {
 
 /// Every loop that there is: one of 14 surfaces.
 fn surface<'a>(kind: u8, texture: &Texture<'a>, lights: &'a Lights<'a>) -> Material<'a> {
-    let clamped = texture.wrap(Wrap::Clamp);
     match kind {
         0 => Material::flat(Rgb565::MAGENTA),
         1 => Material::gouraud(),
         2 => Material::gouraud().lit(lights).faceted(),
         3 => Material::flat(Rgb565::YELLOW).lit(lights).two_sided(),
-        4 => Material::textured(&clamped),
-        5 => Material::textured(&clamped).lit(lights),
+        4 => Material::clamped(texture),
+        5 => Material::clamped(texture).lit(lights),
         6 => Material::textured(texture).lit(lights).two_sided().texture_scale(3),
         7 => Material::textured(texture).lit(lights).faceted().texture_scale(8),
         8 => Material::textured(texture).lit(lights),

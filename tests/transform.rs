@@ -8,6 +8,7 @@
 use crate::{common, reference};
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::marker::PhantomData;
 
 use common::view::{Model, Numbered, lens, placement, position, view};
@@ -600,9 +601,20 @@ fn one_byte_indices_and_parts_draw_the_same_and_a_texture_scale_multiplies_in_30
             let mut band = Band::<Recording, Counting>::new(SCREEN, &mut scaled.pixels, &mut scaled.depth)
                 .expect("the sizes agree");
             eye.camera.draw(&wide, &pose, &Scaled(shader, log2), &mut band);
-            for ((pixel, plain, _), (_, scaled, _)) in picture.iter().zip(scaled.iter()) {
-                let wanted = [0, 1].map(|i: usize| plain.attributes[i] << log2);
-                prop_assert_eq!(&wanted[..], &scaled.attributes[..2], "at {:?}", pixel);
+            // Planes hold scaled coordinates, so these are exacter than what is multiplied at the end: both are within 0.02 of the
+            // change over a pixel. The latter are rounded before, and lean by up to 21 + (160 + 120)/4 units where surfaces are straight.
+            let drawn = picture.iter().filter(|(_, _, met)| met.times > 0);
+            let seen: HashMap<_, _> = drawn.map(|(pixel, plain, _)| (pixel, plain.attributes)).collect();
+            for ((x, y), scaled, _) in scaled.iter().filter(|(_, _, met)| met.times > 0) {
+                for i in 0..2 {
+                    let plain = seen[&(x, y)][i];
+                    let change = |at| seen.get(&at).map_or(0, |beside: &[i32; 5]| (beside[i] - plain).abs());
+                    let change =
+                        [(x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)].map(change).into_iter().max();
+                    let off = (plain << log2).wrapping_sub(scaled.attributes[i]).abs();
+                    let allowed = (96 + change.unwrap_or(0) / 25) << log2;
+                    prop_assert!(off <= allowed, "{} at {:?}: {} units of {}", i, (x, y), off, allowed);
+                }
             }
             Ok(())
         },

@@ -23,7 +23,7 @@ use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Patch, Run, Shader, Textured};
+use crate::shade::{Cover, Run, Shader, Textured};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -45,7 +45,7 @@ pub(crate) struct Direct<'a, F: PixelFormat, T, const RUN: usize> {
     rows: Rows,
 }
 
-const _: () = assert!(size_of::<Direct<'_, Rgb565, (), 64>>() <= 544);
+const _: () = assert!(size_of::<Direct<'_, Rgb565, (), 64>>() <= 560);
 
 impl<'a, F, T, const RUN: usize> Direct<'a, F, T, RUN>
 where
@@ -92,9 +92,9 @@ where
             return Ok(());
         }
         let needs: Needs = needs::<F, NoDepth, S>(shader, [is_orthographic, false]);
-        let fits = RUN > STRAIGHT as usize;
+        let fits = needs.small && RUN > STRAIGHT as usize;
         setup.set(&triangle, &needs, fits && rows.are_simple());
-        if fits && Patch::<F::Word, NoDepth>::takes(setup, rows) {
+        if fits && Cover::<F::Word, NoDepth>::is_small(setup, rows) {
             return self.draw_small(shader);
         }
         let mut result = Ok(());
@@ -136,7 +136,7 @@ where
     /// Draws the small triangle that was set up: a row at a time, which fits a run.
     #[inline(never)]
     fn draw_small<S: Shader<F>>(&mut self, shader: &S) -> Result<(), T::Error> {
-        let Self { target, shown, run, setup, rows, .. } = self;
+        let Self { target, shown, window, run, setup, rows } = self;
         loop {
             let (y, mut row) = (rows.row(), rows.first());
             let Some((start, end)) = rows.next() else {
@@ -146,9 +146,17 @@ where
             if seen.is_empty() {
                 continue;
             }
-            let first = (start as usize).wrapping_neg();
+            let origin = (start as usize).wrapping_neg();
             let (rows, pixels) = (&mut row, &mut run[..]);
-            shader.paint(Patch::<F::Word, NoDepth> { setup, rows, first, width: 0, pixels, depth: &mut [] });
+            shader.paint(Cover::<F::Word, NoDepth> {
+                setup,
+                rows,
+                window,
+                origin,
+                width: 0,
+                pixels,
+                depth: &mut [],
+            });
             let words = run.get((seen.start - start) as usize..(seen.end - start) as usize);
             let area = Rectangle::new(Point::new(seen.start, y), Size::new(seen.len() as u32, 1));
             let colors = words.unwrap_or_default().iter().map(|&word| F::decode(word));

@@ -6,8 +6,8 @@
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
-use crate::raster::{Needs, Packing, Rows, Runs, Span, Straight, TriangleSetup, visible};
-use crate::shade::{Patch, Quality, Run, Shader};
+use crate::raster::{Needs, Packing, Rows, Runs, Straight, TriangleSetup};
+use crate::shade::{Cover, Quality, Shader};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
@@ -43,12 +43,16 @@ pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
 ) -> Needs {
     let texture_scale = shader.texture_scale().min(8);
     let inputs = shader.inputs();
+    let packing = Packing::new(shader.packed_log2(), texture_scale, inputs);
     Needs {
         inputs,
         straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
         every_pixel: S::Quality::EVERY_PIXEL,
-        texture_scale,
-        packing: Packing::new(shader.packed_log2(), texture_scale, inputs),
+        finer: [0; 2],
+        // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
+        scale_log2: [texture_scale, core::hint::black_box(texture_scale)],
+        packings: [packing; 2],
+        small: shader.has_small(),
         depth: !D::ALWAYS_PASSES,
         gray: is_gray,
     }
@@ -130,61 +134,11 @@ where
             return stats.count(|stats| &mut stats.out_of_sight);
         }
         stats.count(|stats| &mut stats.drawn);
-        self.setup.set(triangle, &self.needs, self.rows.are_simple());
-        fill(self.band, &self.setup, &mut self.rows, &self.window, self.shader);
+        self.setup.set(triangle, &self.needs, self.needs.small && self.rows.are_simple());
+        let (setup, rows, window) = (&self.setup, &mut self.rows, &self.window);
+        let (top, width) = (usize::from(self.band.top), usize::from(self.band.width));
+        let origin = 0usize.wrapping_sub(top * width);
+        let (pixels, depth) = (&mut *self.band.pixels, &mut *self.band.depth);
+        self.shader.paint(Cover::<F::Word, D> { setup, rows, window, origin, width, pixels, depth });
     }
-}
-
-/// Draws what a triangle covers of a window of a band.
-fn fill<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
-    band: &mut Band<'_, F, D>,
-    setup: &TriangleSetup,
-    rows: &mut Rows,
-    window: &Window,
-    shader: &S,
-) {
-    let (top, width) = (i32::from(band.top), usize::from(band.width));
-    if Patch::<F::Word, D>::takes(setup, rows) {
-        let (pixels, depth) = (&mut *band.pixels, &mut *band.depth);
-        let first = (rows.row() - top) as usize * width;
-        return shader.paint(Patch::<F::Word, D> { setup, rows, first, width, pixels, depth });
-    }
-    rows.each(window, |y, start, end| {
-        let row = (y - top) as usize * width;
-        let (first, end) = (row + start as usize, row + end as usize);
-        let mut span = Span::new(setup, start, y);
-        if D::ALWAYS_PASSES {
-            if let Some(pixels) = band.pixels.get_mut(first..end) {
-                shader.paint(Run { span, pixels });
-            }
-            return;
-        }
-        let Some(mut depth) = band.depth.get_mut(first..end) else {
-            return;
-        };
-        let (mut near_w, step) = span.depth();
-        let mut first = first;
-        loop {
-            let (run, tested) = visible::<D>(depth, near_w, step);
-            if let Some(pixels) = band.pixels.get_mut(first + run.start..first + run.end)
-                && !pixels.is_empty()
-            {
-                shade(shader, Run { span: span.ahead(run.start), pixels });
-            }
-            depth = depth.get_mut(tested..).unwrap_or_default();
-            if depth.is_empty() {
-                return;
-            }
-            first += tested;
-            near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
-            span = span.ahead(tested);
-        }
-    });
-}
-
-/// Not inlined on Armv6-M: for want of registers the compiler would prepare every kind of span for each triangle, in memory.
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn shade<F: PixelFormat, S: Shader<F>>(shader: &S, run: Run<'_, F::Word>) {
-    shader.paint(run);
 }

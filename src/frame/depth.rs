@@ -6,7 +6,7 @@
 
 use crate::num::U1F31;
 
-/// How depth is stored, and which of two surfaces is visible.
+/// How depth is stored, and which of two surfaces is visible: a test, and a store for what was drawn.
 pub trait DepthFormat {
     /// The depth of one pixel in memory.
     type Word: Copy;
@@ -17,8 +17,22 @@ pub trait DepthFormat {
     /// Whether every test passes. Then none is made, and no memory for depths is needed.
     const ALWAYS_PASSES: bool = false;
 
-    /// Whether a pixel with this near/w is visible; stores its depth if so. Called once for each pixel that a triangle covers.
-    fn test(stored: &mut Self::Word, near_w: U1F31) -> bool;
+    /// Whether a pixel with this near/w is visible where this depth is stored.
+    fn test(stored: &Self::Word, near_w: U1F31) -> bool;
+
+    /// Stores the depth of a pixel that was drawn.
+    fn store(stored: &mut Self::Word, near_w: U1F31);
+
+    /// Both: whether a pixel is visible; stores its depth if so. Called once for each pixel that a triangle covers whose surface draws
+    /// all that is visible of it.
+    #[inline]
+    fn test_and_store(stored: &mut Self::Word, near_w: U1F31) -> bool {
+        let passes = Self::test(stored, near_w);
+        if passes {
+            Self::store(stored, near_w);
+        }
+        passes
+    }
 
     /// Sets all depths to [`DepthFormat::CLEAR`].
     #[doc(hidden)]
@@ -27,11 +41,11 @@ pub trait DepthFormat {
         depth.fill(Self::CLEAR);
     }
 
-    /// As [`DepthFormat::test`], where near/w is known to be 2⁻¹⁶ … 1. (That of small triangles always is.)
+    /// As [`DepthFormat::test_and_store`], where near/w is known to be 2⁻¹⁶ … 1. (That of small triangles always is.)
     #[doc(hidden)]
     #[inline]
-    fn test_small(stored: &mut Self::Word, near_w: U1F31) -> bool {
-        Self::test(stored, near_w)
+    fn test_and_store_small(stored: &mut Self::Word, near_w: U1F31) -> bool {
+        Self::test_and_store(stored, near_w)
     }
 }
 
@@ -54,17 +68,17 @@ impl DepthFormat for Depth16 {
     }
 
     #[inline]
-    fn test(stored: &mut u16, near_w: U1F31) -> bool {
-        let depth = ((near_w.to_bits() >> 15) as u16).max(1);
-        let nearer = depth > *stored;
-        if nearer {
-            *stored = depth;
-        }
-        nearer
+    fn test(stored: &u16, near_w: U1F31) -> bool {
+        depth16(near_w) > *stored
     }
 
     #[inline]
-    fn test_small(stored: &mut u16, near_w: U1F31) -> bool {
+    fn store(stored: &mut u16, near_w: U1F31) {
+        *stored = depth16(near_w);
+    }
+
+    #[inline]
+    fn test_and_store_small(stored: &mut u16, near_w: U1F31) -> bool {
         // Not below 1, as it is: 4 cycles less.
         let depth = near_w.to_bits() >> 15;
         let nearer = depth > u32::from(*stored);
@@ -73,6 +87,11 @@ impl DepthFormat for Depth16 {
         }
         nearer
     }
+}
+
+#[inline]
+fn depth16(near_w: U1F31) -> u16 {
+    ((near_w.to_bits() >> 15) as u16).max(1)
 }
 
 /// No depth: what is drawn last is visible. It takes no memory. A [`DisplayList`](crate::DisplayList) can be
@@ -86,7 +105,10 @@ impl DepthFormat for NoDepth {
     const ALWAYS_PASSES: bool = true;
 
     #[inline]
-    fn test((): &mut (), _: U1F31) -> bool {
+    fn test((): &(), _: U1F31) -> bool {
         true
     }
+
+    #[inline]
+    fn store((): &mut (), _: U1F31) {}
 }

@@ -30,6 +30,34 @@ pub trait PixelFormat {
     /// The word of three 8-bit channels.
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
 
+    /// Whether a word has room for 16 bits of a pass that is not the last: see [`PixelFormat::keep`].
+    #[doc(hidden)]
+    const KEEPS: bool = false;
+
+    /// The word in which 16 bits are left for the next pass.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn keep(bits: u16) -> Self::Word {
+        Self::rgb565(bits)
+    }
+
+    /// What was left in a word.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn kept(_word: Self::Word) -> u16 {
+        0
+    }
+
+    /// The RGB565 number of a word that [`PixelFormat::rgb565`] made.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn texel(_word: Self::Word) -> u16 {
+        0
+    }
+
     /// The word of a grey, whose three channels are all `level`.
     #[inline]
     #[must_use]
@@ -60,6 +88,23 @@ impl PixelFormat for Rgb565 {
     #[inline]
     fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
         (u16::from(red) & 0xf8) << 8 | (u16::from(green) & 0xfc) << 3 | u16::from(blue) >> 3
+    }
+
+    const KEEPS: bool = true;
+
+    #[inline]
+    fn keep(bits: u16) -> u16 {
+        bits
+    }
+
+    #[inline]
+    fn kept(word: u16) -> u16 {
+        word
+    }
+
+    #[inline]
+    fn texel(word: u16) -> u16 {
+        word
     }
 
     #[inline]
@@ -96,6 +141,23 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
     #[inline]
     fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
         F::rgb888(red, green, blue).to_be()
+    }
+
+    const KEEPS: bool = true;
+
+    #[inline]
+    fn keep(bits: u16) -> u16 {
+        bits
+    }
+
+    #[inline]
+    fn kept(word: u16) -> u16 {
+        word
+    }
+
+    #[inline]
+    fn texel(word: u16) -> u16 {
+        u16::from_be(word)
     }
 
     #[inline]

@@ -6,7 +6,7 @@
 
 use super::plane::Plane;
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_17, wide};
+use crate::num::{mul_17, mul_high, wide};
 
 /// (u − u₀)·q, and the way back to u.
 #[derive(Clone, Copy, Debug, Default)]
@@ -14,7 +14,10 @@ pub(crate) struct Attribute {
     /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a sliver in `Exact` u − u₀ in I16F16, and of a straight
     /// triangle u − `least`.
     pub(crate) plane: Plane,
-    /// Of a bent triangle: what is to be added x², xy and y² times, x and y being the way from corner 0's pixel.
+    /// What perspective takes. Of a small triangle that is drawn at one go: what is to be added x², xy and y² times,
+    /// x and y being the way from corner 0's pixel. Of any other that is bent: how much more than the least u would
+    /// be along a row where q is infinite, in 2^k of I16F16; k; and what straight lines keep from the ends of the
+    /// range.
     pub(crate) bend: [i32; 3],
     /// 1 … 31.
     pub(crate) shift: i32,
@@ -25,6 +28,16 @@ pub(crate) struct Attribute {
     pub(crate) range: u32,
     /// What comes out is times 2^this, modulo 2³².
     pub(crate) scale_log2: u32,
+}
+
+/// A pixel of a triangle that is no sliver, and 1/q there.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+    /// 1/q, as [`looked_up`](crate::math::recip::looked_up) has it of q's mantissa, and the leading zeros of q.
+    pub(crate) reciprocal: u32,
+    pub(crate) zeros: u32,
 }
 
 impl Attribute {
@@ -45,9 +58,9 @@ impl Attribute {
     /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
     #[inline]
     pub(crate) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
-        let rise = [at[1] - at[0], at[2] - at[0]];
+        let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
         let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        self.least = at[0] + low;
+        self.least = at[0].wrapping_add(low);
         self.low = low;
         self.range = high.wrapping_sub(low) as u32;
         self.scale_log2 = scale_log2;
@@ -92,57 +105,69 @@ impl Attribute {
     #[inline(never)]
     fn keep_amid(&mut self, inset: u32) {
         let texel = 0x10000 >> self.scale_log2;
-        self.least += (self.range >> 1) as i32;
+        self.least = self.least.wrapping_add_unsigned(self.range >> 1);
         if inset > 2 {
             self.least = (self.least & -texel) + texel / 2;
         }
         (self.low, self.range) = (0, 0);
     }
 
-    /// Sets what u may be, from the least to the greatest, of a straight triangle of which all else is set.
+    /// Sets what u may be, of a straight triangle of which all else is set: the least, and how much more.
     #[inline]
-    pub(crate) fn limit(&mut self, least: i32, greatest: i32) {
+    pub(crate) fn limit(&mut self, least: i32, range: u32) {
         let more = least.wrapping_sub(self.least);
         self.least = least;
         self.low = self.low.wrapping_add(more);
-        self.range = greatest.wrapping_sub(least) as u32;
+        self.range = range;
         self.plane.origin = self.plane.origin.wrapping_add_signed(-more);
     }
 
-    /// The attribute in I16F16 from its plane's value and 1/q; never outside the corners' range.
+    /// How much more than the least it is at a place, in I16F16, without `scale_log2`: never more than the range.
     #[inline]
-    pub(crate) fn exact(&self, value: i32, q: Reciprocal) -> i32 {
-        let product = ((wide(value, q.mantissa) + (1 << 31)) >> 32) as i32; // below 2³⁰
-        let down = self.shift - 2 - q.zeros as i32;
-        let offset =
-            if down > 0 { ((product >> (down - 1)) + 1) >> 1 } else { self.scaled_up(product, -down) };
-        self.finish(offset)
+    pub(crate) fn at(&self, place: &Place) -> i32 {
+        self.divided(self.plane.at(place.x, place.y) as i32, place.reciprocal, place.zeros)
     }
 
-    /// As [`Attribute::exact`], from 1/q in 17 bits, as [`short`](crate::math::recip::short) has it of q's mantissa, and
-    /// the leading zeros of q; without `scale_log2`.
+    /// Likewise, from the plane's value.
     #[inline]
     pub(crate) fn divided(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
-        self.bounded(self.offset(value, reciprocal, zeros))
-    }
-
-    #[inline]
-    fn offset(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
         // Values at corners are within ±(2³⁰ − 2¹⁵), those between too but for rounding: less than 2¹¹ units, see
         // [set-up](super::setup).
-        let product = mul_17(value, reciprocal);
-        let down = self.shift - zeros as i32;
-        if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) }
+        let product = mul_high(value, reciprocal);
+        let down = self.shift - 2 - zeros as i32;
+        self.bounded(if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) })
     }
 
-    /// Where q is the same all along, over at least 2 `steps`: as [`Attribute::along`].
+    /// How much more than the least it is, in I16F16, from the plane's value and 1/q in 17 bits, as
+    /// [`short`](crate::math::recip::short) has it, and the leading zeros of q. Beyond the range, if rounding takes it there.
     #[inline]
-    pub(crate) fn level(&self, value: i32, step: i32, reciprocal: u32, zeros: u32, steps: i32) -> (i32, i32) {
-        // Between three pixels or more, whose values are within ±2³⁰, a step is less than that.
-        let product = mul_17(step, reciprocal);
+    pub(crate) fn above(&self, value: i32, reciprocal: u32, zeros: u32) -> u32 {
+        let product = mul_17(value, reciprocal);
         let down = self.shift - zeros as i32;
-        let step = if down >= 0 { product >> (down & 31) } else { product << (-down & 31) };
-        self.along((self.offset(value, reciprocal, zeros).wrapping_sub(self.low) as u32, step), steps)
+        let offset = if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) };
+        offset.wrapping_sub(self.low) as u32
+    }
+
+    /// Sets the horizon, from the normalised step of q along a row, its leading zeros and its reciprocal in 31 bits.
+    #[inline(never)]
+    pub(super) fn set_horizon(&mut self, rises: bool, zeros: u32, reciprocal: i32, inset: u32) {
+        let quotient = (wide(self.plane.steps[0], reciprocal) >> 32) as i32;
+        let quotient = if rises { quotient } else { -quotient };
+        // By how much the quotient is to be shifted left.
+        let up = zeros as i32 + 2 - self.shift;
+        self.bend = if (1..29).contains(&up) && quotient.unsigned_abs() >> (29 - up) == 0 {
+            [(quotient << up).wrapping_sub(self.low), 0, inset as i32]
+        } else if up > 0 {
+            [quotient.wrapping_sub(self.low >> up.min(31)), up, inset as i32]
+        } else {
+            [(quotient >> (-up).min(31)).wrapping_sub(self.low), 0, inset as i32]
+        };
+    }
+
+    /// How much more than the least it is at the horizon, in 2^k of I16F16, and k.
+    #[inline]
+    pub(crate) fn horizon(&self) -> (i32, u32) {
+        (self.bend[0], self.bend[1] as u32)
     }
 
     #[cold]
@@ -152,19 +177,14 @@ impl Attribute {
         product.clamp(self.low >> shift, high >> shift) << shift
     }
 
-    /// The attribute in I16F16 from u − u₀.
+    /// u − u₀ as how much more than the least u is: never more than the range.
     #[inline]
-    pub(crate) fn finish(&self, offset: i32) -> i32 {
-        self.bounded(offset) << self.scale_log2
-    }
-
-    #[inline]
-    fn bounded(&self, offset: i32) -> i32 {
+    pub(crate) fn bounded(&self, offset: i32) -> i32 {
         let mut above = offset.wrapping_sub(self.low) as u32;
         if above > self.range {
             above = if offset < self.low { 0 } else { self.range };
         }
-        self.least.wrapping_add_unsigned(above)
+        above as i32
     }
 
     /// Of a straight triangle: whether its plane's value is within the range, and no more `steps` further.
@@ -173,39 +193,44 @@ impl Attribute {
         value <= self.range && value.wrapping_add_signed(step.wrapping_mul(steps)) > self.range
     }
 
-    /// Of a straight triangle: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's. Never
-    /// outside the corners' range, even where rounding takes the plane there.
+    /// Of a straight line: the attribute in I16F16 and its step along `steps` + 1 pixels, from the plane's, without
+    /// `scale_log2`. Never outside the range, even where rounding takes the plane there.
     #[inline]
     pub(crate) fn along(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
         let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
         if first <= self.range && last <= self.range {
-            return (self.least.wrapping_add_unsigned(first) << self.scale_log2, step << self.scale_log2);
+            return (self.least.wrapping_add_unsigned(first), step);
         }
         self.along_border(first as i32, last as i32, steps)
+    }
+
+    /// Likewise, of a bent triangle: inside the range by as much as carries may move it, if it is packed.
+    #[inline]
+    pub(crate) fn along_inside(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
+        let [.., inset] = self.bend;
+        let [first_inside, last_inside] = [first, last].map(|above| above.wrapping_sub(inset as u32));
+        let range = self.range as i32 - 2 * inset;
+        if range >= 0 && first_inside <= range as u32 && last_inside <= range as u32 {
+            return (self.least.wrapping_add_unsigned(first), step);
+        }
+        self.along_border_inside(first as i32, last as i32, steps)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn along_border_inside(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
+        let mut inside = *self;
+        inside.keep_inside(self.bend[2] as u32, true);
+        let moved = inside.least.wrapping_sub(self.least);
+        inside.along_border(first.wrapping_sub(moved), last.wrapping_sub(moved), steps)
     }
 
     #[cold]
     #[inline(never)]
     fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let (at, step) = self.unscaled_border(first, last, steps);
-        (at << self.scale_log2, step << self.scale_log2)
-    }
-
-    /// As [`Attribute::along`], without `scale_log2`. Calling it from there costs small triangles 2 % on a Cortex-M0+.
-    #[inline]
-    pub(crate) fn unscaled(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
-        let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
-        if first <= self.range && last <= self.range {
-            return (self.least.wrapping_add_unsigned(first), step);
-        }
-        self.unscaled_border(first as i32, last as i32, steps)
-    }
-
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn unscaled_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
         let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
-        (self.least + first, step_of(last - first, inverse(steps.max(1) as usize)))
+        (self.least.wrapping_add(first), step_of(last - first, inverse(steps.max(1) as usize)))
     }
 }
 

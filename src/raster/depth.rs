@@ -12,6 +12,17 @@ use crate::frame::DepthFormat;
 use crate::num::U1F31;
 use core::ops::Range;
 
+/// How many pixels of a span pass before the first that does not; stores their depths. None are tested where near/w
+/// may be below 2⁻¹⁶.
+#[inline]
+pub(crate) fn first_visible<D: DepthFormat>(
+    depth: &mut [D::Word],
+    (near_w, step): (u32, i32),
+) -> Option<usize> {
+    let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
+    (near_w.min(last) >> 15 != 0).then(|| passing(depth, near_w, step, D::test_and_store_small))
+}
+
 /// Finds the first run of pixels that pass, and stores their depths. Stops at the first pixel that fails after one that passed.
 /// Returns the run, which is empty and at the end of `depth` if no pixel passes, and how many pixels were tested.
 #[inline(never)]
@@ -23,7 +34,7 @@ pub(crate) fn visible<D: DepthFormat>(
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
     // near/w is linear, so the least of it is at an end. From 2⁻¹⁶ on (bit 15) the format's shorter test does.
     let [start, end] = if near_w.min(last) >> 15 != 0 {
-        first_run(depth, near_w, step, D::test_small)
+        first_run(depth, near_w, step, D::test_and_store_small)
     } else {
         first_run_far_away::<D>(depth, near_w, step)
     };
@@ -34,7 +45,7 @@ pub(crate) fn visible<D: DepthFormat>(
 #[cold]
 #[inline(never)]
 fn first_run_far_away<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> [usize; 2] {
-    first_run(depth, near_w, step, D::test)
+    first_run(depth, near_w, step, D::test_and_store)
 }
 
 /// The start and the end (exclusive) of the first run. One loop skips pixels that fail, then [`passing`] counts those that pass.

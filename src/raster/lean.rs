@@ -1,36 +1,49 @@
-//! Lean: texture coordinates that keep to their side of a whole texel, and to the range of the corners.
+//! Lean: texture coordinates that take the right one of two texels, and keep to the range of the corners.
 //!
 //! - In: a triangle whose planes are set, and its texture coordinates at the corners.
-//! - Out: the planes of u and v moved by what they, and runs drawn from them, may be behind; the range that u and v may have.
-//! - Assumes: what each path is off by, as said beside it.
+//! - Out: the planes of u and v, moved by at most their error; the range to which u and v are limited.
+//! - Assumes: errors of planes as `lean_large` says, and of packed runs as [`packing`](super::packing) does.
+//!
+//! A texture coordinate that is a whole number at a pixel's centre lies between two texels. It is to show the one to which it
+//! changes right of the centre, or below if it does not change to the right, as the top-left rule covers pixels. But planes
+//! are rounded, and runs of packed coordinates too: either might be a little behind, and show the other texel. So where
+//! attributes are *exactly* straight (q is constant, or does not count) the plane is moved ahead in that direction, by as
+//! much as it may be behind: it *leans*. With perspective a coordinate is hardly ever whole at a pixel's centre: other
+//! triangles do not lean.
+//!
+//! All triangles keep u and v in [min, max) of their corners: the range ends 2⁻¹⁶ below the greatest value. And v, which
+//! carries of u move where both are packed, keeps as far from both ends as these can take it.
 
 use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
-use crate::geometry::{Oriented, ScreenVertex};
+use crate::geometry::Oriented;
 use crate::num::wide;
 
 impl TriangleSetup {
-    /// Makes the range of a small triangle's u and v end a little inside on both sides, where they may not be exactly straight.
+    /// Limits u and v of a small triangle that does not lean: u below its greatest value, v to its inset.
     #[inline]
     pub(super) fn keep_small_inside(&mut self, needs: &Needs) {
         let [u, v, ..] = &mut self.attributes;
-        if needs.packing.is_steep(u.plane.steps[0]) {
+        if needs.packings[0].is_steep(u.plane.steps[0]) {
             return self.keep_steep_inside(needs);
         }
         u.open_end();
-        v.keep_straight_inside(needs.packing.inset.into());
+        v.keep_straight_inside(needs.packings[1].inset.into());
     }
 
-    /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels: so often that v had better not be stepped.
+    /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels. A patch then takes v from its plane at
+    /// every pixel. Longer runs of blocks may meet a carry at every second step, for which twice the inset is room: see
+    /// `carries` of [`Packing`](super::packing::Packing).
     #[cold]
     #[inline(never)]
     fn keep_steep_inside(&mut self, needs: &Needs) {
         self.step_singly();
         let [u, v, ..] = &mut self.attributes;
         u.open_end();
-        v.keep_inside(2 * u32::from(needs.packing.inset), true);
+        v.keep_inside(2 * u32::from(needs.packings[1].inset), true);
     }
 
-    /// Makes rows of a small triangle begin anew at every pixel.
+    /// Makes a patch evaluate planes at every pixel: no step is added up. It takes any triangle with a short `longest` for a
+    /// bent one, so one that is not gets coefficients of 0.
     fn step_singly(&mut self) {
         if self.longest == STRAIGHT {
             self.attributes.iter_mut().for_each(|attribute| attribute.bend = [0; 3]);
@@ -38,7 +51,10 @@ impl TriangleSetup {
         self.longest = 0;
     }
 
-    /// Makes u and v of what is not small lean if they are exactly straight, or stay a little inside their range.
+    /// Makes u and v of a triangle that is not small lean, or limits them. `fraction_bits` are those of the slopes in
+    /// [`setup`](super::setup), if u and v are exactly straight.
+    ///
+    /// Where they are not, u may repeat within four pixels somewhere: so twice the inset.
     #[inline(never)]
     pub(super) fn settle(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: Option<i32>) {
         if let Some(fraction_bits) = fraction_bits {
@@ -46,20 +62,25 @@ impl TriangleSetup {
         }
         let [u, v, ..] = &mut self.attributes;
         u.open_end();
-        v.keep_inside(2 * u32::from(needs.packing.inset), self.straight);
+        v.keep_inside(2 * u32::from(needs.packings[1].inset), self.straight);
     }
 
-    /// As [`TriangleSetup::lean`], of one that is not small.
+    /// As [`TriangleSetup::lean`], of one that is not small: finds the bound of the plane's error. `bits` are the fraction
+    /// bits of the slopes from which steps were rounded.
     ///
-    /// A plane is off by half a unit at every column and row from its middle on, by one and a half unit of a slope from corner 0 on, and
-    /// by 20 where it begins.
+    /// A plane is off by at most 20 units at corner 0. To that each column and row adds half a unit for the rounding of the
+    /// step, counted from the middle of what is on the screen, and 1.5 units of the slope, 1.5 · 2^−`bits`, counted from
+    /// corner 0.
     #[cold]
     fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, bits: i32) {
         let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
         if self.sliver {
+            // Evaluated by weights where a run begins: off by 4 units at most (24 are allowed). Then half a unit per column.
             self.lean(triangle, needs, 0, 24 + (width >> 1));
         } else if bits < 3 {
-            // Steps of few fraction bits, of a triangle that is not much larger than the screen.
+            // Slopes of so few fraction bits have triangles within 1024 px of corner 0, or else they would be slivers. So the
+            // error at the corners, which `lean` finds, is a good bound, and none within the screen is needed. A step may be
+            // off by a unit of the slope or more, which is 2^−`bits` units of the step: `slack` is 5/4 of that, at least 1.
             self.lean(triangle, needs, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
         } else {
             let all = (0..2).fold(2, |all, axis| {
@@ -70,29 +91,31 @@ impl TriangleSetup {
         }
     }
 
-    /// Makes exactly straight texture coordinates lean in the direction of the change that decides of which texel a whole coordinate
-    /// is (see [`direction`]): by as much as their plane, and a run that is drawn from it, may be behind. So a coordinate that is whole
-    /// at a pixel's centre is never taken for the texel on the wrong side.
+    /// Makes exactly straight texture coordinates lean: moves their planes in the [`direction`] that decides between two
+    /// texels, by as much as a run that is drawn from them may be behind. That is the sum of:
     ///
-    /// What a plane is off by is linear too, so nowhere worse than at one of the corners, where it is known: `most` is what it may be
-    /// within the screen. (A sliver's plane is exact to 4 units where a run begins, and its step to half a unit: `most`.)
+    /// - The plane's error. It is linear as well, so inside the triangle it is nowhere larger than at the worst corner, where
+    ///   it can be computed. `most` is another bound of it, within the screen; the smaller one counts. A sliver has only
+    ///   `most`.
+    /// - Packed coordinates: what rounding takes at the run's first pixel, and what cutting takes from the step, at every
+    ///   pixel.
+    /// - Carries of u into v. They may put v ahead as well. So where an end of v's range is as close to a texel border as
+    ///   that, the range ends this side of it. The texels it shows are the same.
     ///
-    /// A run of packed coordinates is behind by what they are rounded down to at its first pixel, by what its step is cut to, at every
-    /// further pixel, and v by the carries of u, which may put it ahead, too. So v stays that far from the border between two texels
-    /// where the end of its range lies close to one; which texels it shows does not depend on that.
-    ///
-    /// A step that may be off by `slack` is [taken for](Plane::snap) the one of a sprite.
+    /// Steps that are within `slack` units of a sprite's are [taken for those](super::plane::Plane::snap), if that makes no
+    /// larger error.
     #[cold]
     #[inline(never)]
     pub(super) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
         self.leans = true;
-        let [u, v] = [|vertex: &ScreenVertex| vertex.u, |vertex: &ScreenVertex| vertex.v]
-            .map(|coordinate| triangle.vertices.map(|vertex| coordinate(vertex).to_bits()));
+        let u = triangle.vertices.map(|vertex| vertex.u.to_bits() << (needs.finer[0] & 31));
+        let v = triangle.vertices.map(|vertex| vertex.v.to_bits() << (needs.finer[1] & 31));
         let carries = self.lean_by(0, &u, needs, [slack, 0], most);
         self.lean_by(1, &v, needs, [slack, carries], most);
     }
 
-    /// Makes one do so, from its values at the corners. Returns in how many units carries of it may come to.
+    /// Makes attribute `i`, 0 for u or 1 for v, lean. `at` are its values at the corners, I16F16, and `carries` the units by
+    /// which carries may move it. Returns how many units its own carries may come to.
     #[inline(never)]
     fn lean_by(
         &mut self,
@@ -102,12 +125,13 @@ impl TriangleSetup {
         [slack, carries]: [u32; 2],
         most: i32,
     ) -> u32 {
-        let direction = direction(&edges(&self.corners), [at[1] - at[0], at[2] - at[0]]);
+        let direction =
+            direction(&edges(&self.corners), [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])]);
         let attribute = &mut self.attributes[i];
         if direction == 0 {
-            // The middle of its texel, if carries can move it.
+            // Constant. v is put in the middle of its texel if carries can move it.
             if i > 0 {
-                attribute.keep_inside(needs.packing.inset.into(), true);
+                attribute.keep_inside(needs.packings[1].inset.into(), true);
             }
             return 0;
         }
@@ -118,35 +142,37 @@ impl TriangleSetup {
             snapped.snap(&self.corners[0], slack, self.is_small);
             let [mut errors, by_snapped] =
                 [plane, snapped].map(|plane| plane.errors(&self.corners, at, attribute.least));
-            // Whichever is off by less from one corner to another.
+            // Whichever has errors closer together.
             if by_snapped[1] - by_snapped[0] <= errors[1] - errors[0] {
                 (plane, errors) = (snapped, by_snapped);
             }
             behind = behind.min(1 + (if direction > 0 { -errors[0] } else { errors[1] } >> 4));
         }
-        let packing = &needs.packing;
+        let packing = &needs.packings[i];
+        // The step is the same everywhere; a sliver computes it for a pixel.
         let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
         let step = self.at(&plane, first, y).1.unsigned_abs();
         let [first, last] = self.extent(0);
         let unit = u32::from(packing.unit);
-        // Of a large texture, what is not small is drawn in shorter runs.
+        // With a large texture (15 steps) triangles that are not small are drawn in blocks of 8 pixels.
         let longest = if packing.steps == 15 && !self.is_small { 7 } else { u32::from(packing.steps) };
         let steps = longest.min((last - first) as u32);
         let room = (carries * unit) as i32;
         behind += room + (unit + steps * (step & (unit - 1))) as i32;
         plane.origin = plane.origin.wrapping_add_signed(direction * behind);
-        let texel = 0x10000 >> needs.texture_scale;
+        // In I16F16, before `scale_log2` makes 1.0 of it.
+        let texel = 0x10000 >> needs.scale_log2[i & 1];
         let attribute = &mut self.attributes[i];
         let mut least = attribute.least;
-        let mut greatest = least.wrapping_add_unsigned(attribute.range) - 1;
+        let mut greatest = least.wrapping_add_unsigned(attribute.range).wrapping_sub(1);
         if least & (texel - 1) < room {
-            least += room;
+            least = least.wrapping_add(room);
         }
         if greatest & (texel - 1) >= texel - room {
-            greatest -= room;
+            greatest = greatest.wrapping_sub(room);
         }
         attribute.plane = plane;
-        attribute.limit(least, greatest.max(least));
+        attribute.limit(least, greatest.wrapping_sub(least).max(0) as u32);
         if packing.is_steep(step as i32) {
             self.step_singly();
         }
@@ -154,8 +180,8 @@ impl TriangleSetup {
     }
 }
 
-/// Whether a value that rises so from corner 0 to 1 and 2 becomes more (1), less (−1) or nothing else (0) infinitesimally right of
-/// any point, and infinitely less below that: as in the top-left rule. Exact.
+/// The sign of the change of a value to the right, or, if it does not change that way, downwards; 0 if it is constant. From
+/// the edges, as [`edges`] has them, and the rise from corner 0 to corners 1 and 2; exact.
 fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
     match sign_of_sum(right, rise) {
         0 => sign_of_sum(down, rise),
@@ -163,6 +189,7 @@ fn direction([right, down]: &[[i32; 2]; 2], rise: [i32; 2]) -> i32 {
     }
 }
 
+/// The sign of a gradient's component: of the rises times the gradients of the weights of corners 1 and 2.
 #[inline(never)]
 fn sign_of_sum([b, c]: &[i32; 2], rise: [i32; 2]) -> i32 {
     (wide(rise[0], *b) + wide(rise[1], *c)).signum() as i32

@@ -13,11 +13,11 @@ mod span;
 mod straight;
 mod triangle;
 
-pub(crate) use attribute::{Attribute, short_inverse, towards_zero};
-pub(crate) use depth::visible;
+pub(crate) use attribute::{Attribute, Place, short_inverse, towards_zero};
+pub(crate) use depth::{first_visible, visible};
 pub(crate) use folded::{Runs, rows_of_folded};
 pub(crate) use packing::Packing;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;
 pub(crate) use straight::Straight;
-pub(crate) use triangle::{Needs, STRAIGHT, TriangleSetup};
+pub(crate) use triangle::{ATTRIBUTES, Needs, STRAIGHT, TriangleSetup};

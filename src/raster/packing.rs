@@ -1,25 +1,40 @@
-//! Packing: how far packed texture coordinates may be off along a run.
+//! Packing: how far packed texture coordinates may be off along a run of pixels.
+//!
+//! - In: the sides of a texture, whether it can be packed, and which inputs the shader reads.
+//! - Out: the numbers with which [`lean`](super::lean) keeps these errors from showing.
+//! - Assumes: sides of 2 … 256 texels, powers of two, if the texture is packed.
+//!
+//! Packed, u and v of a texture that repeats share one word, u in its lower half, v in its upper one. One addition steps
+//! both. For a side of 2^n texels a coordinate has n integer bits and 16 − n fraction bits. Three errors come with that:
+//!
+//! - At the first pixel of a run a coordinate is rounded down to its last fraction bit, here called a *unit*.
+//! - A step is cut to units, towards zero. That adds up from pixel to pixel.
+//! - Where u repeats, its half of the word overflows: the *carry* moves v by one of its units.
+//!
+//! Therefore runs are short. After so many `steps` a run starts anew from coordinates of 32 bits.
 
 use crate::geometry::Inputs;
 
-/// How [packed texture coordinates](crate::Texture) are drawn, before they are scaled. Of others a unit is 1, and a run has no
-/// steps that add up.
+/// How far texture coordinates may be off in the runs of one shader. All lengths are in I16F16, before coordinates are scaled
+/// by `Attribute::scale_log2`. If they are not packed the unit is 1, and no error adds up.
+#[derive(Clone, Copy)]
 pub(crate) struct Packing {
-    /// The larger unit of the two, I16F16: at a run's first pixel they are rounded down to it, and their steps are cut to it.
+    /// The larger one of the units of u and v, I16F16.
     pub(super) unit: u16,
-    /// How far from the ends of their range u and v stay if they may not be [exactly straight](super::triangle::TriangleSetup::lean), I16F16: as far as
-    /// carries can take v where u does not repeat within four pixels, and 1 at least. 0 if they are not among the inputs.
+    /// How far v stays inside its range, I16F16, where it does not [lean](super::triangle::TriangleSetup::lean): as far as
+    /// carries can take it in a run, if u does not repeat within four pixels. At least 1; 0 if u and v are not among the
+    /// inputs.
     pub(crate) inset: u16,
-    /// The most steps before a run starts anew.
+    /// The most steps before a run starts anew; 0 if coordinates are not packed.
     pub(super) steps: u8,
-    /// Log₂ of where u repeats, I16F16. There it carries into v.
+    /// Log₂ of the length after which u repeats, I16F16.
     pub(super) turn_log2: u8,
 }
 
 const _: () = assert!(size_of::<Packing>() == 6);
 
 impl Packing {
-    /// Of a texture with sides of these log₂, if it is packed, for these inputs.
+    /// For a texture with sides of 2^`log2` texels, or `None` if it is not packed.
     #[inline(never)]
     pub(crate) fn new(log2: Option<[u32; 2]>, scale_log2: u32, inputs: Inputs) -> Self {
         if !matches!(inputs, Inputs::Uv | Inputs::UvColor) {
@@ -34,15 +49,35 @@ impl Packing {
         Self { unit, inset: unit * (steps / 4 + 3), steps: steps as u8, turn_log2 }
     }
 
-    /// Whether a step makes u repeat within four pixels.
+    /// The same for coordinates with `log2` more fraction bits.
+    #[inline]
+    pub(super) fn finer(&self, log2: u32) -> Self {
+        if log2 == 0 || self.steps == 0 {
+            return Self { ..*self };
+        }
+        let turn_log2 = self.turn_log2 + log2 as u8;
+        Self { unit: self.unit << log2, inset: self.inset << log2, turn_log2, ..*self }
+    }
+
+    /// Whether runs are short, because a side has more than 64 texels.
+    #[inline]
+    pub(super) fn is_large(&self) -> bool {
+        self.steps == 15
+    }
+
+    /// Whether u repeats within four pixels if it changes by this per pixel, I16F16.
     #[inline]
     pub(super) fn is_steep(&self, u_step: i32) -> bool {
         u_step.unsigned_abs() >> ((self.turn_log2 - 2) & 31) != 0
     }
 
-    /// How many units of v carries may come to in so many steps of u: one where it begins, one for each time it repeats, which is
-    /// every second step at the most, as whole turns of u are left out; and v may be one unit too large for what a falling u is to
-    /// borrow from it.
+    /// How many units of v the carries of u may come to in a run. `u_step` is the size of u's step, I16F16.
+    ///
+    /// Each time that u repeats is one carry. That may be once more than the run has whole periods, and the number of periods
+    /// is rounded down here. A third unit is for a falling u, which borrows from v: v starts one unit too large then.
+    ///
+    /// But u repeats at every second step at most: whole periods are taken out of a step, which leaves at most half
+    /// a period in either direction.
     pub(super) fn carries(&self, u_step: u32, steps: u32) -> u32 {
         let turns = ((u_step >> 8) * steps) >> (self.turn_log2 - 8);
         (turns + 3).min(steps / 2 + 2)

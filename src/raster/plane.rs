@@ -1,23 +1,34 @@
-//! A plane: a quantity that is linear on the screen, as a value and two steps.
+//! A plane: a quantity that is linear on the screen, as its value at pixel (0, 0) and its steps per column and per row.
 //!
-//! Far outside the triangle a value may not fit 32 bits. It wraps there, and wraps back on the way to where it does fit.
+//! - In: the value and the steps, which set-up computes.
+//! - Out: for texture coordinates, steps moved to round numbers, and by how much the plane misses the values at the corners.
+//! - Assumes: inside the triangle values fit 32 bits. Far outside they may wrap, and wrap back on the way in.
 
-/// A linear function on the screen, in integers that wrap. (A sliver, see [`setup`](super::setup), keeps values at its corners
-/// instead.)
+/// A linear function on the screen, in integers that wrap. A sliver (see [`setup`](super::setup)) keeps values at its corners
+/// in the same fields.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Plane {
     /// The value at the centre of pixel (0, 0). In a sliver: at corner 0.
     pub(crate) origin: u32,
-    /// The change over one column to the right, and over one row down. In a sliver: from corner 0 to corner 1, and to corner 2.
+    /// The change over one column to the right, and over one row down. In a sliver: from corner 0 to corner 1, and to corner
+    /// 2.
     pub(crate) steps: [i32; 2],
 }
 
 impl Plane {
-    /// Moves each step to the nearest multiple of 2⁻¹² if that is within its error, of a small triangle 2⁻¹⁶ of it more; around a
-    /// corner.
+    /// The value at a pixel's centre. Not of a sliver.
+    #[inline]
+    pub(crate) fn at(&self, x: i32, y: i32) -> u32 {
+        let [right, down] = self.steps;
+        self.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down)))
+    }
+
+    /// For a texture coordinate, in I16F16: moves each step to the nearest multiple of 2⁻¹² if that is at most `error` units
+    /// away. Steps of a small triangle may be off by 2⁻¹⁶ of themselves more. The value stays what it is at the pixel of
+    /// `corner`, which is in 1/16 px.
     ///
-    /// Sprites have such steps: of whole texels a pixel, of a half or a quarter. One unit less would cost a unit of packed
-    /// coordinates at every pixel.
+    /// Sprites have such steps: a whole texel per pixel, a half or a quarter. If rounding left one a unit too small, packed
+    /// coordinates, which cut steps to *their* unit, would lose one of theirs at every pixel.
     pub(super) fn snap(&mut self, corner: &[i32; 2], error: u32, is_small: bool) {
         for (step, at) in self.steps.iter_mut().zip(corner) {
             let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
@@ -29,14 +40,18 @@ impl Plane {
         }
     }
 
-    /// By how much what it says at the corners (1/16 px), above `least`, is above the values there, in 1/16: 0 or less, and 0 or more.
+    /// The plane's errors at the corners, in 1/16 of its unit: the least, or 0 if none is negative, and the greatest, or 0 if
+    /// none is positive. The plane is one of u − `least`; `values` are the right u at the corners, whose positions are in
+    /// 1/16 px.
     #[inline(never)]
     pub(super) fn errors(&self, corners: &[[i32; 2]; 3], values: &[i32; 3], least: i32) -> [i32; 2] {
         let [right, down] = self.steps;
         let mut errors = [0; 2];
         for ([x, y], value) in corners.iter().zip(values) {
+            // From the centre of pixel (0, 0), 16 times.
             let way = right.wrapping_mul(x - 8).wrapping_add(down.wrapping_mul(y - 8));
-            let error = ((self.origin.wrapping_sub((value - least) as u32) << 4) as i32).wrapping_add(way);
+            let error =
+                ((self.origin.wrapping_sub(value.wrapping_sub(least) as u32) << 4) as i32).wrapping_add(way);
             errors = [errors[0].min(error), errors[1].max(error)];
         }
         errors

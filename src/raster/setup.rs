@@ -25,12 +25,14 @@
 //!   |u₀ − u(p)| ≤ 2·M·d · q(p)/q₀, and |U(corner)| ≤ 4·M·d · q(p).
 //! - An error of k units in q (of 2⁻³⁰·q₀ or less) moves u by k·2⁻³⁰·q₀·|u₀ − u|/q ≤ k·2⁻²⁹·M·d.
 //! - An error of k units in U (of 2⁻²⁹·max|U|) moves u by k·2⁻²⁹·max|U|/q ≤ k·2⁻²⁷·M·d.
-//! - The reciprocal's 2⁻²⁰ moves u by 2⁻¹⁹·M·d; the 17 bits of it that the default quality takes, by 2⁻¹⁶·M·d, 0.031 px at most.
+//! - The reciprocal's 2⁻²⁰ moves u by 2⁻¹⁹·M·d; the 17 bits of it that rows take where q is the same all along, by
+//!   2⁻¹⁶·M·d, 0.031 px at most.
 //!
 //! Each is kept as a plane: a value at pixel (0, 0) and one rounded step a column and a row, **in wrapping
-//! integers**. What the plane says far outside the triangle wraps, and wraps back: inside, where the true value fits 32
-//! bits, only the rounding of the steps remains, k ≤ (n + m)/2 + 16 after n columns and m rows from the middle of what is
-//! within the screen. With n, m ≤ 512 and d ≤ 2047 the sum of all is 0.012 px in the very worst case for any ratio of w.
+//! integers**. What the plane says far outside the triangle wraps, and wraps back: inside, where the true value fits
+//! 32 bits, only the rounding of the steps remains, k ≤ (n + m)/2 + 16 after n columns and m rows from the middle of
+//! what is within the screen. With n, m ≤ 512 and d ≤ 2047 the sum of these, without the 17 bits of level rows, is
+//! 0.014 px in the very worst case for any ratio of w.
 //!
 //! # Which texel a whole coordinate is
 //!
@@ -41,10 +43,11 @@
 //!
 //! # Slivers
 //!
-//! In a sliver the steps are large and nearly cancel, and where distances differ more than 4096-fold q has too few bits at
-//! the far corner for [`Exact`](crate::Exact). Then a plane holds the values at the corners instead, and is
-//! evaluated by weights from the exact edge functions, which never cancel; `Exact` mixes attributes at every pixel, by weights
-//! from the exact products of edge functions and q. Both are slower, rare, and out of line.
+//! In a sliver, thinner than a pixel or two along x or y, the steps are large and nearly cancel, and where distances
+//! differ more than 4096-fold q has too few bits at the far corner for [`Exact`](crate::Exact). Then a plane holds
+//! the values at the corners instead, and is evaluated by weights from the exact edge functions, which never cancel;
+//! `Exact` mixes attributes at every pixel, by weights from the exact products of edge functions and q. Both are
+//! slower, rare, and out of line.
 
 use super::attribute::Attribute;
 use super::plane::Plane;
@@ -52,7 +55,7 @@ use super::straight::{Bend, Straight};
 use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
 use crate::geometry::{Inputs, Oriented, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, shift_round, wide};
+use crate::num::{mul_round, normalised, shift_round, wide};
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
 struct Slopes {
@@ -81,8 +84,32 @@ impl TriangleSetup {
         if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
             self.gray = needs.gray || triangle.vertices.into_iter().all(|vertex| is_gray(vertex.color));
         }
+        if needs.scale_log2[0] > 0 && needs.packings[0].inset > 0 {
+            return self.set_scaled(triangle, needs, simple);
+        }
         if !self.set_small_planes(triangle, needs, simple) {
             self.set_any_planes(triangle, needs);
+        }
+    }
+
+    /// Where texture coordinates are scaled, as much of the scale as there is room for goes into planes: for their rounding is
+    /// multiplied by the rest of it. What is beyond ±32768 wraps, as it would if it were scaled at the end.
+    #[cold]
+    #[inline(never)]
+    fn set_scaled(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
+        let [a, b, c] = triangle.vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
+        let sizes = [0, 1].map(|i| {
+            (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs()
+        });
+        // Differences stay below 2²⁷ in a small triangle, and 2²⁹ in any other.
+        let within = |bits: u32| {
+            let finer =
+                [0, 1].map(|i| sizes[i].leading_zeros().saturating_sub(32 - bits).min(needs.scale_log2[i]));
+            let scale_log2 = [0, 1].map(|i| needs.scale_log2[i] - finer[i]);
+            Needs { finer, scale_log2, packings: [0, 1].map(|i| needs.packings[i].finer(finer[i])), ..*needs }
+        };
+        if !self.set_small_planes(triangle, &within(27), simple) {
+            self.set_any_planes(triangle, &within(29));
         }
     }
 
@@ -121,13 +148,76 @@ impl TriangleSetup {
             self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
         }
         let mixed = self.sliver && needs.every_pixel;
+        self.is_extreme =
+            !self.straight && (self.sliver || needs.every_pixel || self.planes_leave_range(q[0]));
         needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            let at = if self.straight { at } else { self.contract(at, i, needs) };
             self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
             true
         });
-        if needs.packing.inset > 0 {
+        if needs.packings[0].inset > 0 && self.straight {
             self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
         }
+        if !self.straight {
+            self.set_horizons(needs);
+        }
+    }
+
+    /// What a row needs for perspective, besides the planes: the step of q along it, normalised, and each attribute's
+    /// value at the horizon.
+    fn set_horizons(&mut self, needs: &Needs) {
+        let step = self.q.steps[0];
+        let size = step.unsigned_abs();
+        // Below 2¹² q changes by 2⁻⁸ of itself over 1023 pixels, if it is 2³⁰.
+        self.is_level = !self.sliver && size < if needs.every_pixel { 1 } else { 1 << 12 };
+        (self.q_step, self.q_step_zeros) = normalised(size.max(1));
+        self.q_rises = step > 0;
+        let reciprocal = Reciprocal::precise_normalised(self.q_step, self.q_step_zeros).mantissa;
+        let inset = u32::from(needs.packings[1].inset);
+        for (i, attribute) in self.attributes.iter_mut().take(needs.count(self.gray)).enumerate() {
+            // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
+            let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
+            attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
+        }
+    }
+
+    /// Whether the plane of U may be off by more than 2⁻¹⁷ of its attribute's range: by (n + m)/2 + 16 units of 2⁻²⁹
+    /// after n columns and m rows from the middle of the triangle, times the greatest q by the least.
+    fn planes_leave_range(&self, greatest: u32) -> bool {
+        let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| (last - first) as u32);
+        let units = (width + height) / 4 + 16;
+        (units * (greatest >> 16)) >> 12 >= self.q_min >> 16
+    }
+
+    /// An attribute's values at the corners, I16F16, each moved a little towards the middle of the three: so that
+    /// what rounding adds on the way to a pixel does not take it out of their range.
+    ///
+    /// That is 2⁻¹⁶ of the range, and 64 units at least, which are 2⁻¹⁰ of a texel or of 1/255; in extreme triangles
+    /// 4 units, as there slopes come from both ends. Of texture coordinates that are packed it is 16 units of these
+    /// at least: over a chord of 8 pixels v loses up to 8 by rounding, and 4 by carries. At the far end of a row the
+    /// plane of U may be off by 2⁻¹⁷ of the range; where it may be more, the triangle [is
+    /// extreme](TriangleSetup::planes_leave_range). The division at the near end is off by 2⁻²⁰, which 1/w makes 2⁻¹⁷
+    /// at most.
+    fn contract(&self, at: [i32; 3], i: usize, needs: &Needs) -> [i32; 3] {
+        let is_packed = needs.packings[0].inset > 1 && i < 2;
+        let log2 = if is_packed && !needs.packings[0].is_large() {
+            31 - normalised(needs.packings[i].unit.into()).1 + 5
+        } else {
+            0
+        };
+        let log2 = log2.max(if self.is_extreme { 3 } else { 7 });
+        let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
+        let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
+        let range = high.wrapping_sub(low) as u32;
+        let middle = at[0].wrapping_add(low).wrapping_add_unsigned(range >> 1);
+        if range >> log2 > 1 {
+            let shift = 31 - normalised(range).1 - log2;
+            let shift = if self.is_extreme { shift } else { shift.min(15) };
+            return at.map(|at| at.wrapping_add(middle.wrapping_sub(at) >> shift));
+        }
+        // No room: one value all over. v gets the centre of its texel, out of which no carry moves it.
+        let texel = 0x10000 >> needs.scale_log2[i & 1];
+        [if is_packed && i == 1 { (middle & -texel) + texel / 2 } else { middle }; 3]
     }
 
     /// Finds out whether it is a sliver, too.

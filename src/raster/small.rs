@@ -1,26 +1,34 @@
-//! Set-up of a small triangle, which most of a mesh's are: the same in short products.
+//! Set-up of a small triangle, as most triangles of a mesh are: what [`setup`](super::setup) does, in 32-bit products.
 //!
 //! - In: an oriented triangle, and what the shader wants of it.
-//! - Out: its planes; or no, if the triangle is too large, too thin, or its distances differ too much.
+//! - Out: the planes of its depth and attributes; or `false` if it has to be set up by the general way.
 //! - Assumes: the corners lie in the guard band.
 //!
-//! A triangle of at most 64 pixels across whose distances differ by less than a quarter needs planes that are exact enough
-//! over 64 pixels only. An edge's extent e is below 2¹⁰ there, in 1/16 px: a value's slope, 16·(Σ rise·e)/area a pixel, is a
-//! sum of products without rounding where rises have 19 bits, times 1/area with a relative error of 2⁻¹⁷. So after 64
-//! columns and rows a value is off by 1/1024 of its change over one pixel.
+//! A triangle is *small* if corners 1 and 2 are less than 64 pixels from corner 0, in x and in y. The general way takes it
+//! nevertheless if it is too thin, if q varies too much, or if its attributes have to be divided by q at its pixels.
+//!
+//! With e for the differences of an edge in 1/16 px, below 2¹⁰, and `area` for twice the area in 1/256 px², a value changes
+//! by 16·(rise₁·e₁ + rise₂·e₂)/area per pixel. For rises of 19 bits the sum is exact in 32 bits; longer ones are shortened to
+//! that. 1/area has a relative error of 2⁻¹⁷. So 64 columns and 64 rows from corner 0 a value is off by 128·2⁻¹⁷ = 1/1024 of
+//! its change over one pixel.
 //!
 //! # Bent triangles
 //!
-//! Where u is not linear enough it bends, as [`straight`](super::straight) has it, by the covariance of u and q divided by q.
-//! With q̄, the middle of the least and the greatest q, for q that is a quadratic, of which no pixel needs a division:
+//! A triangle that is not straight may be *bent*: its attributes are quadratics on the screen, and again no pixel divides.
+//! [`straight`](super::straight) has the difference of exact and linear u: the covariance of u and q, divided by q. The
+//! covariance is a quadratic that is 0 at the corners. With a constant in the place of the divisor, q_mid = (q_min +
+//! q_max)/2, the whole is one, too:
 //!
 //! ```text
-//! u = u₀ + V − (∇u·p)(∇q·p)/q̄,   p the way from corner 0, and V the plane that leaves the corners as they are
+//! u = u₀ + V·p − (∇u·p)(∇q·p)/q_mid,   p being the offset from corner 0
 //! ```
 //!
-//! q̄ is wrong by half of what q falls by, so at most ½·fall of the bend is: (length/4)·fall·(fall/2), of which 3/32 pixel are
-//! allowed. A patch draws a row of it as a straight line between its ends, or several, and may be wrong by as
-//! much again.
+//! ∇u and ∇q are the gradients of linear interpolation. V is the gradient with which u is right at corners 1 and 2: V·p is
+//! Δuᵢ·(1 + Δqᵢ/q_mid) there. (q₀ is the greatest, so Δqᵢ ≤ 0.)
+//!
+//! q_mid differs from q by at most half of what q varies by. So of the correction, at most (length/4)·fall pixels, at most
+//! fall/2 is wrong: length·fall²/8 pixels, of which 3/32 are allowed. A patch draws a row as straight lines between points
+//! of the quadratic, which may be off by 3/32 again. Rounding has the rest of the quarter pixel.
 
 use super::attribute::Attribute;
 use super::plane::Plane;
@@ -32,10 +40,11 @@ use crate::num::{mul_16, mul_16_signed, mul_17};
 
 /// What all planes of a triangle have in common.
 struct Slopes {
-    /// By how much the edge functions of corners 1 and 2 change a column, and a row, of 1/16 px; below 2¹⁰.
+    /// As [`edges`] has them, in 1/16 px, below 2¹⁰.
     edges: [[i32; 2]; 2],
-    /// 1/area = `reciprocal` · 2^(`zeros` − 48).
+    /// 1 / (twice the area in 1/256 px²) = `reciprocal` · 2^(`zeros` − 48); 2¹⁶ … 2¹⁷.
     reciprocal: u32,
+    /// The leading zeros of twice the area.
     zeros: u32,
     /// Corner 0's pixel.
     pixel: [i32; 2],
@@ -44,15 +53,16 @@ struct Slopes {
 }
 
 impl Slopes {
-    /// As [`Slopes::set`], for a caller that does little else.
+    /// As [`Slopes::set`].
     ///
-    /// Not inlined: one in which all of this is at hand keeps most of it on the stack.
+    /// Not inlined: a caller that does more than this would keep most of it on the stack.
     #[inline(never)]
     fn set_plane(&self, plane: &mut Plane, rise_1: i32, rise_2: i32) {
         self.set(plane, rise_1, rise_2);
     }
 
-    /// Sets an attribute from its I16F16 values at the corners: false if it changes too much.
+    /// Sets range and plane of an attribute from its I16F16 values at the corners. False, and the plane of no use, if these
+    /// differ by 2²⁷ or more.
     #[inline(never)]
     fn set_attribute(&self, attribute: &mut Attribute, at: &[i32; 3], scale_log2: u32) -> bool {
         let rise = attribute.set_range(*at, scale_log2);
@@ -61,8 +71,8 @@ impl Slopes {
         attribute.range < 1 << 27
     }
 
-    /// Sets a plane, whose `origin` is the value at corner 0 yet, by the rise from there to corners 1 and 2; a step has to fit 32
-    /// bits.
+    /// Completes a plane whose `origin` holds the value at corner 0, from the rises to corners 1 and 2. Its steps are right
+    /// if they fit 32 bits.
     #[inline(always)]
     fn set(&self, plane: &mut Plane, rise_1: i32, rise_2: i32) {
         let size = rise_1.unsigned_abs() | rise_2.unsigned_abs();
@@ -74,10 +84,11 @@ impl Slopes {
             12
         };
         let (rise_1, rise_2) = (rise_1 >> dropped, rise_2 >> dropped);
+        // 2⁴ for 16 sixteenths, 2¹⁶ that `mul_17` took away, and 2^(zeros − 48) of the reciprocal.
         let up = (self.zeros + dropped) as i32 - 28;
         for axis in 0..2 {
             let [b, c] = self.edges[axis];
-            // 19 bits times 10, twice: within ±2³⁰.
+            // Two products of 19 bits and a sign with 10 bits and a sign: within ±2³⁰.
             let slope = mul_17(rise_1 * b + rise_2 * c, self.reciprocal);
             let step = if up < 0 { slope >> (-up & 31) } else { slope << (up & 31) };
             plane.steps[axis] = step;
@@ -90,18 +101,22 @@ impl Slopes {
 }
 
 impl TriangleSetup {
-    /// Sets all planes of a small triangle: false, and nothing of use done, for any other.
+    /// Sets all planes of a small triangle. False, and the planes of no use, if the general way has to. `simple` says that
+    /// the triangle's [rows](super::rows) are, so that a patch may draw it.
     #[inline(never)]
     pub(crate) fn set_small_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) -> bool {
         let edges = edges(&self.corners);
         let largest = edges.as_flattened().iter().fold(0, |all, e| all | e.unsigned_abs());
-        // At most 64 pixels across, and at least a quarter thick: a step of 2²⁷ over that still fits.
+        // Less than 64 pixels from corner 0. And thick enough: no edge is longer than 2 · `largest` along an axis, so along
+        // the other one the triangle measures at least 4/2 sixteenths. A rise of 2²⁷ over that makes a step of 2³⁰, which
+        // fits.
         if largest >= 1 << 10 || largest * 4 > triangle.area {
             return false;
         }
         let q = triangle.vertices.map(|vertex| vertex.q.to_bits());
         let (most, least) = (q[0], q[1].min(q[2]));
-        // Depth must not wrap where rounding takes it out of 0 … 2³¹, and is never 0.
+        // Rounding, by less than 2048 units, must not take depth out of 2¹⁵ … 2³¹: beyond it would wrap, and below it would
+        // be 0 in 16 bits.
         if most > (1 << 31) - 2048 || least < (1 << 15) + 2048 || most - least >= 1 << 27 {
             return false;
         }
@@ -113,10 +128,12 @@ impl TriangleSetup {
             pixel: self.corners[0].map(|at| at >> 4),
             to_center: self.corners[0].map(|at| 8 - (at & 15)),
         };
-        // Also where no depth is tested: pixels are not to depend on that.
+        // Also where no depth is tested: a step that is refused below sends the triangle the general way, and pixels are not
+        // to depend on whether depth is tested.
         self.z.origin = q[0];
         slopes.set_plane(&mut self.z, q[1].wrapping_sub(q[0]) as i32, q[2].wrapping_sub(q[0]) as i32);
-        // 2⁻¹⁶ of which, over the triangle's extent, is a quarter of a depth step.
+        // A step is off by 2⁻¹⁷ of itself. Over `largest` sixteenths to the right and down that has to stay below 2¹³ units,
+        // a quarter of a step of a 16-bit depth: step · largest ≤ 2³³.
         let step = self.z.steps[0].unsigned_abs() | self.z.steps[1].unsigned_abs();
         if step >> 27 != 0 || (step >> 8) * largest > 1 << 25 {
             return false;
@@ -134,7 +151,7 @@ impl TriangleSetup {
                 self.set_linear(triangle, needs, &slopes)
             }
         };
-        if are_set && needs.packing.inset > 0 {
+        if are_set && needs.packings[0].inset > 0 {
             if needs.is_exactly_straight(least, most) {
                 self.lean(triangle, needs, 2, i32::MAX);
             } else {
@@ -144,7 +161,8 @@ impl TriangleSetup {
         are_set
     }
 
-    /// Sets attributes that may bend: false, and nothing of use done, where they do too much.
+    /// Sets attributes as straight or, where that is not exact enough, as bent. False, and their planes of no use, if neither
+    /// will do (they have to be divided by q), or one varies too much.
     #[inline(never)]
     fn set_bending(
         &mut self,
@@ -172,19 +190,19 @@ impl TriangleSetup {
         self.straight
     }
 
-    /// Whether attributes that are linear on the screen are good enough.
+    /// Whether linear interpolation will do for each attribute.
     #[inline(never)]
     fn are_straight(&self, triangle: &Oriented<'_>, needs: &Needs, bend: &Bend, limit: u32) -> bool {
         needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
-            let rise = [b - a, c - a];
+            let rise = [b.wrapping_sub(a), c.wrapping_sub(a)];
             (rise[0].unsigned_abs() | rise[1].unsigned_abs()) < 1 << 27
                 && bend.is_straight_for(limit, rise, 0x10000 >> scale_log2)
         })
     }
 
-    /// Makes attributes linear on the screen: false if one changes too much.
+    /// Sets attributes as linear on the screen. False if the values of one differ by 2²⁷ or more.
     ///
-    /// Not inlined: what this needs of the stack need not be there when attributes are bent.
+    /// Not inlined, to keep its stack frame from being there while attributes are bent.
     #[inline(never)]
     fn set_linear(&mut self, triangle: &Oriented<'_>, needs: &Needs, slopes: &Slopes) -> bool {
         let attributes = &mut self.attributes;
@@ -193,7 +211,7 @@ impl TriangleSetup {
         })
     }
 
-    /// Bends attributes, of which planes are set, as much as perspective does.
+    /// Bends attributes whose planes are linear by now. The last parameter is ∇q/q_mid per column and row, 16 fraction bits.
     #[inline(never)]
     fn set_bent(
         &mut self,
@@ -204,6 +222,8 @@ impl TriangleSetup {
         [q_right, q_down]: [i32; 2],
     ) {
         self.straight = true;
+        // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
+        // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
         self.longest = STRAIGHT / 2;
         while (self.longest * self.longest) * q_right.abs() > 3 << 13 {
             self.longest >>= 1;
@@ -213,18 +233,22 @@ impl TriangleSetup {
             let Some(attribute) = self.attributes.get_mut(i) else {
                 return false;
             };
-            let rise = [at[1] - at[0], at[2] - at[0]];
+            let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
             let [right, down] = attribute.plane.steps;
-            // Steps are below 2²⁹·⁶, as a range of 2²⁷ over at least 0.17 px makes them; q's below a quarter: below 2²⁷·⁶.
+            // The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at least
+            // 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
             let xx = -mul_16_signed(right, q_right);
             let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
             let yy = -mul_16_signed(down, q_down);
-            // So much that the corners are what they were.
+            // V, in the place of ∇u: Δuᵢ·(1 − fall).
             attribute.plane.origin = attribute.origin();
             let [rise_1, rise_2] = [0, 1].map(|i| rise[i] - mul_16(rise[i], bend.fall(i)));
             slopes.set_plane(&mut attribute.plane, rise_1, rise_2);
-            // From corner 0's pixel instead of corner 0, by at most 8 sixteenths: sums below 2³¹.
+            // The quadratic is evaluated by offsets (m, n) from the centre of corner 0's pixel, while p counts from corner 0:
+            // it is (m + x/16, n + y/16). What is linear in m and n of that goes into the steps, and what is constant into
+            // the origin. With x and y at most 8, sums are below 2³¹.
             let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
+            // From pixel (0, 0) on, as the origin is.
             let [m, n] = slopes.pixel;
             attribute.plane.origin = attribute
                 .plane

@@ -25,15 +25,4 @@ impl<'a> Span<'a> {
     pub(crate) const fn ahead(&self, pixels: usize) -> Self {
         Self { setup: self.setup, x: self.x + pixels as i32, y: self.y }
     }
-
-    /// near/w with 31 fraction bits at the first pixel, and its step per pixel.
-    pub(crate) fn depth(&self) -> (u32, i32) {
-        self.setup.at(&self.setup.z, self.x, self.y)
-    }
-
-    /// Whether attributes are linear on the screen.
-    #[inline]
-    pub(crate) fn is_straight(&self) -> bool {
-        self.setup.straight
-    }
 }

@@ -31,28 +31,43 @@ pub(crate) struct TriangleSetup {
     pub(crate) straight: bool,
     /// Whether they are so exactly, and texture coordinates [lean](TriangleSetup::lean).
     pub(crate) leans: bool,
+    /// Of a bent one: whether its planes may leave the range of the corners by more than [`TriangleSetup::contract`] allows for.
+    pub(crate) is_extreme: bool,
     /// near/w with 31 fraction bits; for depth.
     pub(crate) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(crate) q: Plane,
     /// Of a bent triangle: how many steps along a row attributes are nearly linear.
     pub(crate) longest: i32,
+    /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
+    /// step is below 2¹².
+    pub(crate) is_level: bool,
+    /// Of a bent one: the step of q along a row, its size with the first bit set; how far it was
+    /// shifted for that; and whether q rises.
+    pub(crate) q_step: u32,
+    pub(crate) q_step_zeros: u32,
+    pub(crate) q_rises: bool,
     /// The least q of the corners.
     pub(crate) q_min: u32,
     pub(crate) attributes: [Attribute; ATTRIBUTES],
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 304);
+const _: () = assert!(size_of::<TriangleSetup>() <= 316);
 
 /// What a shader wants of a triangle.
 pub(crate) struct Needs {
     pub(crate) inputs: Inputs,
     pub(crate) straight: Straight,
-    /// Whether it divides at every pixel.
+    /// Whether perspective is exact at every pixel.
     pub(crate) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8.
-    pub(crate) texture_scale: u32,
-    pub(crate) packing: Packing,
+    /// u and v are multiplied by 2^this, 0 … 8 together: before planes are made of them (see [`TriangleSetup::set`]),
+    /// and at the end.
+    pub(crate) finer: [u32; 2],
+    pub(crate) scale_log2: [u32; 2],
+    /// How u and v are packed.
+    pub(crate) packings: [Packing; 2],
+    /// Whether a small triangle is drawn at one go, so that its attributes may be bent.
+    pub(crate) small: bool,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
@@ -66,8 +81,15 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
+    /// How many attributes are in use.
+    pub(super) fn count(&self, gray: bool) -> usize {
+        let uv = if matches!(self.inputs, Inputs::Uv | Inputs::UvColor) { 2 } else { 0 };
+        let color = if gray { 1 } else { 3 };
+        uv + if matches!(self.inputs, Inputs::Color | Inputs::UvColor) { color } else { 0 }
+    }
+
     /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle.
+    /// v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
     #[inline]
     pub(crate) fn each_attribute(
         &self,
@@ -88,11 +110,11 @@ impl Needs {
         };
         (first..end).all(|i| {
             let at = |vertex: &ScreenVertex| match i {
-                0 => vertex.u.to_bits(),
-                1 => vertex.v.to_bits(),
+                0 => vertex.u.to_bits() << (self.finer[0] & 31),
+                1 => vertex.v.to_bits() << (self.finer[1] & 31),
                 _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
             };
-            set(i - first, vertices.map(at), if i < 2 { self.texture_scale } else { 0 })
+            set(i - first, vertices.map(at), if i < 2 { self.scale_log2[i] } else { 0 })
         })
     }
 }
@@ -108,9 +130,14 @@ impl TriangleSetup {
             is_small: false,
             straight: false,
             leans: false,
+            is_extreme: false,
             z: Plane::default(),
             q: Plane::default(),
             longest: 0,
+            is_level: false,
+            q_step: 0,
+            q_step_zeros: 0,
+            q_rises: false,
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
@@ -127,17 +154,28 @@ impl TriangleSetup {
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
     #[inline]
     pub(crate) fn at(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
-        let [right, down] = plane.steps;
         if self.sliver {
             return self.at_in_sliver(plane, x, y);
         }
-        (plane.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down))), right)
+        (plane.at(x, y), plane.steps[0])
     }
 
-    /// By weights: exact edge functions times 1/area.
+    /// q with what rounding errors took below the least or above the greatest value at a corner taken away.
+    #[inline]
+    pub(crate) fn bounded(&self, q: u32) -> u32 {
+        if q as i32 <= 0 { self.bounded_q(q) } else { q }
+    }
+
     #[cold]
     #[inline(never)]
-    fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+    fn bounded_q(&self, q: u32) -> u32 {
+        if q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { q.min(i32::MAX as u32) }
+    }
+
+    /// A plane's value in a sliver, by weights: exact edge functions times 1/area.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn value_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> u32 {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         let weighted = |edge_function: i32, rise: i32| {
@@ -146,10 +184,18 @@ impl TriangleSetup {
             mul_round::<31>(weight.min(i64::from(i32::MAX)) as i32, rise)
         };
         let [b, c] = plane.steps;
-        let value = plane
+        plane
             .origin
             .wrapping_add_signed(weighted((ax - cx) * py - (ay - cy) * px, b))
-            .wrapping_add_signed(weighted((bx - ax) * py - (by - ay) * px, c));
+            .wrapping_add_signed(weighted((bx - ax) * py - (by - ay) * px, c))
+    }
+
+    /// Likewise, and its step to the right.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+        let [[_, ay], [_, by], [_, cy]] = self.corners;
+        let [b, c] = plane.steps;
         // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
         // two pixels, since the value stays within 32 bits.
         let sum = wide(cy - ay, b) - wide(by - ay, c);
@@ -157,19 +203,14 @@ impl TriangleSetup {
         let excess = 33u32.saturating_sub(magnitude.leading_zeros());
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
         let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
-        (value, if sum < 0 { -step } else { step })
+        (self.value_in_sliver(plane, x, y), if sum < 0 { -step } else { step })
     }
 
-    /// The first `N` attributes of a sliver at a pixel's centre, I16F16, with weights edge function · q / sum of both
+    /// An attribute of a sliver at a pixel's centre, I16F16 without its scale, with weights edge function · q / sum of both
     /// at each corner: exact products, divided to 30 bits.
     #[cold]
     #[inline(never)]
-    pub(crate) fn resolve_in_sliver<const N: usize>(
-        &self,
-        attributes: &[Attribute; N],
-        x: i32,
-        y: i32,
-    ) -> [i32; N] {
+    pub(crate) fn resolve_in_sliver(&self, attribute: &Attribute, x: i32, y: i32) -> i32 {
         let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         let (b, c) = ((ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px);
@@ -186,10 +227,8 @@ impl TriangleSetup {
             let weight = wide(upper(product), reciprocal.mantissa) >> 30;
             weight.min(i64::from(i32::MAX)) as i32
         });
-        attributes.each_ref().map(|attribute| {
-            let [b, c] = attribute.plane.steps;
-            attribute.finish(mul_round::<31>(weights[0], b) + mul_round::<31>(weights[1], c))
-        })
+        let [b, c] = attribute.plane.steps;
+        attribute.bounded(mul_round::<31>(weights[0], b) + mul_round::<31>(weights[1], c))
     }
 }
 
@@ -197,4 +236,21 @@ impl TriangleSetup {
 #[inline]
 pub(crate) fn edges([a, b, c]: &[[i32; 2]; 3]) -> [[i32; 2]; 2] {
     [[c[1] - a[1], a[1] - b[1]], [a[0] - c[0], b[0] - a[0]]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn q_that_rounding_took_out_of_its_range_is_brought_back() {
+        let (least, most) = (5, i32::MAX as u32);
+        let setup = TriangleSetup { q_min: least, ..TriangleSetup::new() };
+        let met =
+            [(0, least), (u32::MAX, least), (u32::MAX - 2000, least), (1 << 31, most), (most + 2000, most)];
+        let inside = [least, 6, 1 << 20, most].map(|q| (q, q));
+        for (q, bounded) in met.into_iter().chain(inside) {
+            assert_eq!(setup.bounded(q), bounded, "{q:#x}");
+        }
+    }
 }

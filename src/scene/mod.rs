@@ -18,6 +18,6 @@ pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError};
 pub use plane_error::PlaneError;
 pub(crate) use projection::{Projection, Viewport};
-pub use texture::{Texture, TextureError, Wrap, texels};
+pub use texture::{Texture, TextureError, texels};
 pub use vertex::Vertex;
 pub use vertex_error::VertexError;

@@ -2,19 +2,11 @@
 
 use core::fmt;
 
-/// What a texture shows outside its borders.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Wrap {
-    /// Itself again and again, to negative coordinates too.
-    #[default]
-    Repeat,
-    /// Its border texels.
-    Clamp,
-}
-
 /// A borrowed RGB565 picture of 2^w × 2^h texels, rows from the top, w and h from 0 to 10.
 ///
-/// Texel (i, j) covers the coordinates i … i + 1, j … j + 1.
+/// Texel (i, j) covers the coordinates i … i + 1, j … j + 1. What lies beyond the borders is the material's choice: the texture again
+/// and again ([`Material::textured`](crate::Material::textured)), or its border texels
+/// ([`Material::clamped`](crate::Material::clamped)).
 ///
 /// ```
 /// use fixel::{Texture, texels};
@@ -36,7 +28,6 @@ pub struct Texture<'a> {
     texels: &'a [u16],
     log2_width: u8,
     log2_height: u8,
-    wrap: Wrap,
     /// For packed coordinates, see the shaders of [`Material`](crate::Material).
     mask: u32,
     multiplier: u32,
@@ -77,16 +68,9 @@ impl<'a> Texture<'a> {
             texels,
             log2_width: log2_width as u8,
             log2_height: log2_height as u8,
-            wrap: Wrap::Repeat,
             mask: (0xffff_0000 << (16 - log2_height)) | (((1 << log2_width) - 1) << (16 - log2_width)),
             multiplier: 1 + (1 << (16 - log2_height)),
         })
-    }
-
-    /// The same texels with another behaviour outside the borders.
-    #[must_use]
-    pub const fn wrap(self, wrap: Wrap) -> Self {
-        Self { wrap, ..self }
     }
 
     /// Width and height in texels.
@@ -114,13 +98,7 @@ impl<'a> Texture<'a> {
     #[inline]
     pub(crate) const fn is_packable(&self, scale_log2: u32) -> bool {
         let (a, b) = (self.log2_width as u32, self.log2_height as u32);
-        matches!(self.wrap, Wrap::Repeat)
-            && a >= 1
-            && b >= 1
-            && a <= 8
-            && b <= 8
-            && a >= scale_log2
-            && b >= scale_log2
+        a >= 1 && b >= 1 && a <= 8 && b <= 8 && a >= scale_log2 && b >= scale_log2
     }
 
     /// Whether a side has more than 64 texels, so that packed coordinates have less than 10 fraction bits.
@@ -143,15 +121,6 @@ impl<'a> Texture<'a> {
         let u = u.clamp(0, (1 << self.log2_width) - 1) as u32;
         let v = v.clamp(0, (1 << self.log2_height) - 1) as u32;
         self.texel(u, v)
-    }
-
-    /// The texel at whole texel coordinates of any size.
-    #[inline]
-    pub(crate) fn fetch(&self, u: i32, v: i32) -> u16 {
-        match self.wrap {
-            Wrap::Repeat => self.fetch_repeat(u, v),
-            Wrap::Clamp => self.fetch_clamp(u, v),
-        }
     }
 
     /// The texel at packed coordinates, of a texture that is packable.

@@ -7,22 +7,18 @@
 //! Each of three channels has 8 integer and 8 fraction bits here. Red and blue share a machine word: one addition steps both.
 //! A single channel keeps its 16 fraction bits.
 //!
-//! A run is *straight* if channels change by the same step from pixel to pixel. It is *bent* if a *bend* is added to the
-//! steps after every second pixel, to follow perspective. With 8 fraction bits steps and bends are cut towards zero. So after
-//! 8 pixels of a bent run, or 16 of a straight one, a channel is off by at most 1/16 of 1/255, its unit. That is how long
-//! such runs may be.
+//! With 8 fraction bits steps are cut towards zero. So after 16 pixels of a straight line a channel is off by at most 1/16 of
+//! 1/255, its unit. That is how long a line may be before it starts anew.
 
-use super::fill::LONGEST;
+use super::curve::Linear;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
 
-/// `M` packed channels: the values at a pixel, or steps, or bends.
+/// `M` packed channels: the values at a pixel, or steps.
 pub(crate) trait Channels<const M: usize>: Copy {
     /// How many of the 16 fraction bits are dropped.
     const DROPPED: u32;
-    /// The longest bent run, in pixels.
-    const LONGEST: i32;
-    /// Log₂ of the longest straight run, in pixels. If bits are dropped a longer one is drawn as several, each of which starts
+    /// Log₂ of the longest line, in pixels. If bits are dropped a longer one is drawn as several, each of which starts
     /// anew from 16 fraction bits.
     const RUN_LOG2: u32;
 
@@ -44,6 +40,19 @@ pub(crate) trait Channels<const M: usize>: Copy {
         Self::pack(step.map(|step| shifted(step, Self::DROPPED)))
     }
 
+    /// The values at a pixel, from 8 integer and 24 fraction bits.
+    #[inline]
+    fn place_modular(channels: [u32; M]) -> Self {
+        Self::place(channels.map(|channel| (channel >> 8) as i32))
+    }
+
+    /// Likewise, and the step.
+    #[inline]
+    fn modular(lines: [Linear; M]) -> [Self; 2] {
+        let step = Self::step(lines.map(|line| shifted(line.slope, 8)));
+        [Self::place_modular(lines.map(|line| line.at)), step]
+    }
+
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
 
@@ -60,7 +69,6 @@ pub(crate) struct Gray(i32);
 
 impl Channels<1> for Gray {
     const DROPPED: u32 = 0;
-    const LONGEST: i32 = LONGEST as i32;
     const RUN_LOG2: u32 = 5;
 
     #[inline]
@@ -90,7 +98,6 @@ pub(crate) struct RedBlueGreen(i32, i32);
 
 impl Channels<3> for RedBlueGreen {
     const DROPPED: u32 = 8;
-    const LONGEST: i32 = 8;
     const RUN_LOG2: u32 = 4;
 
     #[inline]

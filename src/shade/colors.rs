@@ -1,62 +1,80 @@
-//! Fills of colours, and of texels times light.
+//! The fill of colours between vertices (Gouraud shading).
 //!
-//! - In: a run of pixels, with channels (and u, v) at its first one and their steps.
+//! - In: a run of pixels, and the curve of its channels.
 //! - Out: words.
-//! - Assumes: attributes are linear, or bend as said, along the run.
+//! - Assumes: channels stay within 0 … 255.996 at every pixel.
 
-use super::channels::{Channels, lit};
-use super::fill::{Fill, in_pairs, plus};
-use super::packed::{longest_row_of, packed_from, packed_step, shifted, turned, uv_in_units};
+use super::channels::Channels;
+use super::curve::{Curve, Linear};
+use super::fill::{Fill, FillRow, some_of};
+use super::inverses::inverse;
 use super::row::Row;
+use super::units::Units;
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::scene::Texture;
+use crate::raster::ATTRIBUTES;
+use core::hint::black_box;
 use core::marker::PhantomData;
 
-/// Gouraud shading.
-pub(crate) struct Colors<F, C>(PhantomData<(F, C)>);
+/// `M` channels: one for greys, else three.
+pub(crate) struct Colors<const M: usize, F, C>(PhantomData<(F, C)>);
 
-impl<F, C> Colors<F, C> {
+impl<const M: usize, F, C> Colors<M, F, C> {
     pub(crate) const NEW: Self = Self(PhantomData);
 }
 
-impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
-    type Word = F::Word;
-
-    #[inline]
-    fn longest(&self) -> i32 {
-        C::LONGEST
+impl<const M: usize, F: PixelFormat, C: Channels<M>> Colors<M, F, C> {
+    /// Along a straight line of packed channels.
+    #[inline(never)]
+    fn run(pixels: &mut [F::Word], mut packed: C, step: C) {
+        for pixel in pixels {
+            *pixel = packed.word::<F>();
+            packed = packed.plus(step);
+            black_box(());
+        }
     }
+}
 
-    #[inline]
-    fn in_units(&self, _i: usize, value: i32, _scale_log2: u32) -> i32 {
-        value >> C::DROPPED
-    }
-
-    #[inline]
-    fn pixel(&self, at: [i32; M]) -> F::Word {
-        C::place(at).word::<F>()
+impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M, F, C> {
+    fn units(&self) -> Units {
+        Units::modular([8; M])
     }
 
     #[inline(never)]
-    fn run_long(&self, pixels: &mut [F::Word], mut at: [i32; M], step: [i32; M]) {
+    fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
+        let lines = some_of::<M, _>(&line.lines, 0);
+        let (mut at, step) = (lines.map(|line| line.at as i32), lines.map(|line| line.slope));
         let packed_step = C::step(step);
-        let run = |pixels: &mut [F::Word], at: [i32; M]| {
-            let mut packed = C::place(at);
-            for pixel in pixels {
-                *pixel = packed.word::<F>();
-                packed = packed.plus(packed_step);
-            }
-        };
         if C::DROPPED == 0 {
-            return run(pixels, at);
+            return Self::run(pixels, C::place(at), packed_step);
         }
         for block in pixels.chunks_mut(1 << C::RUN_LOG2) {
-            run(block, at);
+            Self::run(block, C::place(at), packed_step);
             for (at, step) in at.iter_mut().zip(step) {
                 *at = at.wrapping_add(step << C::RUN_LOG2);
             }
         }
     }
+
+    #[inline(never)]
+    fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
+        let lines = some_of::<M, _>(&curve.lines, 0);
+        let (mut w, w_step) = (curve.w, curve.w_step);
+        for pixel in pixels {
+            let t = inverse(w);
+            *pixel = C::place_modular(lines.map(|line| line.value(t))).word::<F>();
+            w = w.wrapping_add(w_step);
+            black_box(());
+        }
+    }
+
+    fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
+        let [packed, step] = C::modular(some_of(lines, 0));
+        Self::run(pixels, packed, step);
+    }
+}
+
+impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F, C> {
+    type Word = F::Word;
 
     #[inline]
     fn longest_row(&self) -> i32 {
@@ -66,230 +84,6 @@ impl<F: PixelFormat, C: Channels<M>, const M: usize> Fill<M> for Colors<F, C> {
     #[inline]
     fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
         let step = C::step(step);
-        let first = C::place(at);
-        row.draw(first, |at| at.plus(step), |at| at.word::<F>());
-    }
-
-    #[inline]
-    fn bent(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M], bend: [i32; M]) {
-        let draw = |pixel: &mut F::Word, [at, step]: &mut [C; 2]| {
-            *pixel = at.word::<F>();
-            *at = at.plus(*step);
-        };
-        in_pairs(pixels, [at, step].map(C::pack), C::pack(bend), draw, |[_, step], bend| {
-            *step = step.plus(bend);
-        });
+        row.draw(C::place(at), |at| at.plus(step), |at| at.word::<F>());
     }
 }
-
-/// Texels times light; of a texture that repeats, with coordinates packed as [`Texels`](super::fill::Texels) has them.
-pub(crate) struct LitTexels<'a, F, C> {
-    texture: &'a Texture<'a>,
-    is_packed: bool,
-    channels: PhantomData<(F, C)>,
-}
-
-impl<'a, F: PixelFormat, C> LitTexels<'a, F, C> {
-    #[inline]
-    pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32) -> Self {
-        Self { texture, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
-    }
-
-    /// A straight run from a place of u and v, and of light, with the step of each, in the units of bent runs.
-    #[inline]
-    fn run<const M: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        [at, step]: [[i32; 2]; 2],
-        [mut light, light_step]: [C; 2],
-    ) where
-        C: Channels<M>,
-    {
-        if !self.is_packed {
-            return self.run_unpacked(pixels, [at, step], [light, light_step]);
-        }
-        let (mut packed, step) = (packed_from(at, step[0]), packed_step([turned(step[0]), step[1]]));
-        for pixel in pixels {
-            *pixel = lit::<F>(self.texture.fetch_packed(packed), light.rgb());
-            (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
-        }
-    }
-
-    /// As [`LitTexels::run`] of a texture that is not packable.
-    #[inline(never)]
-    fn run_unpacked<const M: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        [mut at, step]: [[i32; 2]; 2],
-        [mut light, light_step]: [C; 2],
-    ) where
-        C: Channels<M>,
-    {
-        for pixel in pixels {
-            *pixel = lit::<F>(self.texture.fetch(at[0] >> 16, at[1] >> 16), light.rgb());
-            (at, light) = (plus(at, step), light.plus(light_step));
-            // Not unrolled: 1 KiB.
-            core::hint::black_box(());
-        }
-    }
-
-    /// A bent run: where u and v, and light, begin, their steps, and what is added to these after every second pixel.
-    #[inline]
-    fn bend<const M: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        [at, step, bend]: [[i32; 2]; 3],
-        [light, light_step, light_bend]: [C; 3],
-    ) where
-        C: Channels<M>,
-    {
-        if !self.is_packed {
-            return self.bend_unpacked(pixels, [at, step, bend], [light, light_step, light_bend]);
-        }
-        let packed = packed_from(at, step[0].wrapping_mul(2).wrapping_add(bend[0]));
-        let (step, bend, light) = (packed_step(step), packed_step(bend), [light, light_step]);
-        let draw = |pixel: &mut F::Word, (at, light): &mut ([u32; 2], [C; 2])| {
-            *pixel = lit::<F>(self.texture.fetch_packed(at[0]), light[0].rgb());
-            (at[0], light[0]) = (at[0].wrapping_add(at[1]), light[0].plus(light[1]));
-        };
-        in_pairs(pixels, ([packed, step], light), (bend, light_bend), draw, |(at, light), bend| {
-            (at[1], light[1]) = (at[1].wrapping_add(bend.0), light[1].plus(bend.1));
-        });
-    }
-
-    /// As [`LitTexels::bend`] of a texture that is not packable.
-    #[inline(never)]
-    fn bend_unpacked<const M: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        [at, step, bend]: [[i32; 2]; 3],
-        [light, light_step, light_bend]: [C; 3],
-    ) where
-        C: Channels<M>,
-    {
-        let light = [light, light_step];
-        let draw = |pixel: &mut F::Word, (at, light): &mut ([[i32; 2]; 2], [C; 2])| {
-            let [[u, v], step] = *at;
-            *pixel = lit::<F>(self.texture.fetch(u >> 16, v >> 16), light[0].rgb());
-            (at[0], light[0]) = (plus([u, v], step), light[0].plus(light[1]));
-        };
-        in_pairs(pixels, ([at, step], light), (bend, light_bend), draw, |(at, light), bend| {
-            (at[1], light[1]) = (plus(at[1], bend.0), light[1].plus(bend.1));
-        });
-    }
-
-    #[inline]
-    fn short<D: DepthFormat, const M: usize>(
-        &self,
-        row: Row<'_, F::Word, D>,
-        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
-        (light, light_step): ([i32; M], [i32; M]),
-    ) where
-        C: Channels<M>,
-    {
-        let light_step = C::step(light_step);
-        let light = C::place(light);
-        if !self.is_packed {
-            let [at, step] = [[u, v], [u_step, v_step]].map(|uv| uv.map(|value| value << row.scale_log2(0)));
-            return row.draw(
-                (at, light),
-                |(at, light)| (plus(at, step), light.plus(light_step)),
-                |([u, v], light)| lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb()),
-            );
-        }
-        let [a, b] = self.texture.log2().map(|log2| log2.wrapping_sub(row.scale_log2(0)) & 31);
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let first = packed_from([u >> a, v >> b], u_step);
-        let plus = |light: C| light.plus(light_step);
-        row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {
-            lit::<F>(texel, light.rgb())
-        });
-    }
-
-    #[inline]
-    fn long<const M: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        (mut at, step): ([i32; 2], [i32; 2]),
-        (mut light, light_step): ([i32; M], [i32; M]),
-    ) where
-        C: Channels<M>,
-    {
-        let [a, b] = if self.is_packed { self.texture.log2() } else { [0; 2] };
-        let unit_step = [shifted(step[0], a), shifted(step[1], b)];
-        let packed_light_step = C::step(light_step);
-        let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
-        for block in pixels.chunks_mut(1 << log2) {
-            let packed_light = C::place(light);
-            self.run(block, [[at[0] >> a, at[1] >> b], unit_step], [packed_light, packed_light_step]);
-            at = [at[0].wrapping_add(step[0] << log2), at[1].wrapping_add(step[1] << log2)];
-            for (light, step) in light.iter_mut().zip(light_step) {
-                *light = light.wrapping_add(step << log2);
-            }
-        }
-    }
-}
-
-macro_rules! fill_of_lit_texels {
-    ($n:literal, $m:literal) => {
-        impl<F: PixelFormat, C: Channels<$m>> Fill<$n> for LitTexels<'_, F, C> {
-            type Word = F::Word;
-
-            #[inline]
-            fn longest(&self) -> i32 {
-                if self.is_packed && self.texture.is_large() { 8 } else { C::LONGEST }
-            }
-
-            #[inline]
-            fn in_units(&self, i: usize, value: i32, scale_log2: u32) -> i32 {
-                if i < 2 {
-                    uv_in_units(self.texture, self.is_packed, i, value, scale_log2)
-                } else {
-                    value >> C::DROPPED
-                }
-            }
-
-            #[inline]
-            fn pixel(&self, [u, v, light @ ..]: [i32; $n]) -> F::Word {
-                let light = C::place(light);
-                lit::<F>(self.texture.fetch(u >> 16, v >> 16), light.rgb())
-            }
-
-            #[inline]
-            fn run_long(
-                &self,
-                pixels: &mut [F::Word],
-                [u, v, light @ ..]: [i32; $n],
-                [u_step, v_step, light_step @ ..]: [i32; $n],
-            ) {
-                self.long(pixels, ([u, v], [u_step, v_step]), (light, light_step));
-            }
-
-            #[inline]
-            fn longest_row(&self) -> i32 {
-                longest_row_of(self.texture, self.is_packed).min((1 << C::RUN_LOG2) - 1)
-            }
-
-            #[inline]
-            fn row<D: DepthFormat>(
-                &self,
-                row: Row<'_, F::Word, D>,
-                [u, v, light @ ..]: [i32; $n],
-                [u_step, v_step, light_step @ ..]: [i32; $n],
-            ) {
-                self.short(row, ([u, v], [u_step, v_step]), (light, light_step));
-            }
-
-            #[inline]
-            fn bent(&self, pixels: &mut [F::Word], at: [i32; $n], step: [i32; $n], bend: [i32; $n]) {
-                let ([u, v, at @ ..], [u_step, v_step, step @ ..]) = (at, step);
-                let [u_bend, v_bend, bend @ ..] = bend;
-                let uv = [[u, v], [u_step, v_step], [u_bend, v_bend]];
-                self.bend(pixels, uv, [at, step, bend].map(C::pack));
-            }
-        }
-    };
-}
-
-fill_of_lit_texels!(3, 1);
-fill_of_lit_texels!(5, 3);

@@ -1,10 +1,11 @@
 //! Materials: the shaders that come with the crate.
 
 use super::channels::{Gray, RedBlueGreen, color, lit};
-use super::colors::{Colors, LitTexels};
-use super::fill::Texels;
+use super::colors::Colors;
+use super::lit_texels::LitTexels;
 use super::quality::{Affine, Exact, Quality, QuarterPixel};
 use super::shader::{Pixels, Shader, Varying};
+use super::texels::Texels;
 use crate::frame::PixelFormat;
 use crate::geometry::{Coloring, Cull, Inputs};
 use crate::math::Pose;
@@ -33,6 +34,7 @@ enum Surface<'a> {
     /// RGB565 bits.
     Flat(u16),
     Textured(Texture<'a>),
+    Clamped(Texture<'a>),
     Gouraud,
 }
 
@@ -63,10 +65,17 @@ impl<'a> Material<'a> {
         Self::new(Surface::Flat(RawU16::from(color).into_inner()))
     }
 
-    /// A texture, at the vertices' texture coordinates.
+    /// A texture, at the vertices' texture coordinates. It repeats, to negative coordinates too.
     #[must_use]
     pub const fn textured(texture: &Texture<'a>) -> Self {
         Self::new(Surface::Textured(*texture))
+    }
+
+    /// A texture whose border texels are seen beyond its borders. For labels and decals: it takes longer to draw than one that
+    /// [repeats](Material::textured), most of all in small triangles.
+    #[must_use]
+    pub const fn clamped(texture: &Texture<'a>) -> Self {
+        Self::new(Surface::Clamped(*texture))
     }
 
     /// The vertices' colours, blended between them.
@@ -146,8 +155,8 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     fn inputs(&self) -> Inputs {
         match (&self.surface, self.lights) {
             (Surface::Flat(_), None) => Inputs::None,
-            (Surface::Textured(_), None) => Inputs::Uv,
-            (Surface::Textured(_), Some(_)) => Inputs::UvColor,
+            (Surface::Textured(_) | Surface::Clamped(_), None) => Inputs::Uv,
+            (Surface::Textured(_) | Surface::Clamped(_), Some(_)) => Inputs::UvColor,
             (Surface::Flat(_) | Surface::Gouraud, _) => Inputs::Color,
         }
     }
@@ -159,8 +168,12 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     fn packed_log2(&self) -> Option<[u32; 2]> {
         match &self.surface {
             Surface::Textured(texture) => packed_log2::<Q>(texture, self.texture_scale),
-            Surface::Flat(_) | Surface::Gouraud => None,
+            Surface::Flat(_) | Surface::Clamped(_) | Surface::Gouraud => None,
         }
+    }
+
+    fn has_small(&self) -> bool {
+        !matches!(self.surface, Surface::Clamped(_))
     }
 
     fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
@@ -169,7 +182,7 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         };
         let base = match self.surface {
             Surface::Flat(color) => Some(channels(color)),
-            Surface::Textured(_) => Some([255; 3]),
+            Surface::Textured(_) | Surface::Clamped(_) => Some([255; 3]),
             Surface::Gouraud => None,
         };
         Coloring::lit(base, lights.in_mesh_space(pose), self.faceted, self.two_sided)
@@ -180,43 +193,53 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
         let channels = whole(varying.color.map(|channel| channel.to_bits()));
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => F::rgb565(*color),
-            (Surface::Textured(texture), None) => F::rgb565(texture.fetch(u, v)),
-            (Surface::Textured(texture), Some(_)) => lit::<F>(texture.fetch(u, v), channels),
+            (Surface::Textured(texture), None) => F::rgb565(texture.fetch_repeat(u, v)),
+            (Surface::Textured(texture), Some(_)) => lit::<F>(texture.fetch_repeat(u, v), channels),
+            (Surface::Clamped(texture), None) => F::rgb565(texture.fetch_clamp(u, v)),
+            (Surface::Clamped(texture), Some(_)) => lit::<F>(texture.fetch_clamp(u, v), channels),
             (Surface::Flat(_) | Surface::Gouraud, _) => color::<F>(channels),
         }
     }
 
     fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
-        // `Exact` has no use for coordinates and light in 16 bits.
-        let (gray, packed) = (pixels.is_gray(), !Q::EVERY_PIXEL);
+        let (gray, exact) = (pixels.is_gray(), Q::EVERY_PIXEL);
         let scale_log2 = self.texture_scale.into();
         match (&self.surface, self.lights) {
             (Surface::Flat(color), None) => pixels.fill_evenly(F::rgb565(*color)),
             (Surface::Textured(texture), None) => textured::<F, Q, P>(texture, scale_log2, pixels),
-            (Surface::Textured(texture), Some(_)) => match (packed, gray) {
-                (true, true) => pixels.fill::<3, _>(&LitTexels::<F, Gray>::new(texture, scale_log2)),
-                (true, false) => {
-                    pixels.fill::<5, _>(&LitTexels::<F, RedBlueGreen>::new(texture, scale_log2));
-                }
-                (false, true) => {
-                    pixels.shade(|[u, v, light]| lit::<F>(texture.fetch(u >> 16, v >> 16), whole([light; 3])))
-                }
-                (false, false) => pixels.shade(|[u, v, light @ ..]: [i32; 5]| {
-                    lit::<F>(texture.fetch(u >> 16, v >> 16), whole(light))
+            (Surface::Textured(texture), Some(_)) => match (exact, gray) {
+                (false, true) => pixels.fill(&LitTexels::<1, F, Gray>::new(texture, scale_log2)),
+                (false, false) => pixels.fill(&LitTexels::<3, F, RedBlueGreen>::new(texture, scale_log2)),
+                (true, true) => pixels.shade(|[u, v, light]| {
+                    lit::<F>(texture.fetch_repeat(u >> 16, v >> 16), whole([light; 3]))
+                }),
+                (true, false) => pixels.shade(|[u, v, light @ ..]: [i32; 5]| {
+                    lit::<F>(texture.fetch_repeat(u >> 16, v >> 16), whole(light))
                 }),
             },
-            (Surface::Flat(_) | Surface::Gouraud, _) => match (packed, gray) {
-                (true, true) => pixels.fill::<1, _>(&Colors::<F, Gray>::NEW),
-                (true, false) => pixels.fill::<3, _>(&Colors::<F, RedBlueGreen>::NEW),
-                (false, true) => pixels.shade(|[gray]| color::<F>(whole([gray; 3]))),
-                (false, false) => pixels.shade(|rgb: [i32; 3]| color::<F>(whole(rgb))),
+            (Surface::Clamped(texture), None) => {
+                pixels.shade_rows(|[u, v]| F::rgb565(texture.fetch_clamp(u >> 16, v >> 16)));
+            }
+            (Surface::Clamped(texture), Some(_)) if gray => {
+                pixels.shade_rows(|[u, v, light]| {
+                    lit::<F>(texture.fetch_clamp(u >> 16, v >> 16), whole([light; 3]))
+                });
+            }
+            (Surface::Clamped(texture), Some(_)) => pixels.shade_rows(|[u, v, light @ ..]: [i32; 5]| {
+                lit::<F>(texture.fetch_clamp(u >> 16, v >> 16), whole(light))
+            }),
+            (Surface::Flat(_) | Surface::Gouraud, _) => match (exact, gray) {
+                (false, true) => pixels.fill(&Colors::<1, F, Gray>::NEW),
+                (false, false) => pixels.fill(&Colors::<3, F, RedBlueGreen>::NEW),
+                (true, true) => pixels.shade(|[gray]| color::<F>(whole([gray; 3]))),
+                (true, false) => pixels.shade(|rgb: [i32; 3]| color::<F>(whole(rgb))),
             },
         }
     }
 }
 
-/// A [`Material`] that is a texture, and can be nothing else: a program that draws with no other is about half as large as
-/// with [`Material`], which has loops for every surface.
+/// A [`Material`] that is a texture which repeats, and can be nothing else: a program that draws with no other is
+/// about half as large as with [`Material`], which has loops for every surface.
 ///
 /// ```
 /// use fixel::{Material, Texture, Textured};
@@ -241,7 +264,7 @@ impl<Q> Clone for Textured<'_, Q> {
 impl<Q> Copy for Textured<'_, Q> {}
 
 impl<'a> Textured<'a> {
-    /// At the vertices' texture coordinates; backs are left out.
+    /// At the vertices' texture coordinates; it repeats, and backs are left out.
     #[must_use]
     pub const fn new(texture: &Texture<'a>) -> Self {
         Self { texture: *texture, cull: Cull::Back, texture_scale: 0, quality: PhantomData }
@@ -295,7 +318,7 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Textured<'_, Q> {
     }
 
     fn color(&self, varying: &Varying) -> F::Word {
-        F::rgb565(self.texture.fetch(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
+        F::rgb565(self.texture.fetch_repeat(varying.u.to_bits() >> 16, varying.v.to_bits() >> 16))
     }
 
     fn paint<P: Pixels<F::Word, Q>>(&self, pixels: P) {
@@ -314,9 +337,9 @@ where
     P: Pixels<F::Word, Q>,
 {
     if Q::EVERY_PIXEL {
-        pixels.shade(|[u, v]| F::rgb565(texture.fetch(u >> 16, v >> 16)));
+        pixels.shade(|[u, v]| F::rgb565(texture.fetch_repeat(u >> 16, v >> 16)));
     } else {
-        pixels.fill::<2, _>(&Texels::<F>::new(texture, scale_log2));
+        pixels.fill(&Texels::<F>::new(texture, scale_log2));
     }
 }
 

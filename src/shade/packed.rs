@@ -1,6 +1,7 @@
 //! Texture coordinates packed in one word, so that one addition steps both, and the texels at them.
 
-use crate::raster::STRAIGHT;
+use super::curve::Linear;
+use crate::raster::{ATTRIBUTES, STRAIGHT};
 use crate::scene::Texture;
 
 /// The texel at packed coordinates of a texture of so many.
@@ -10,22 +11,24 @@ pub(crate) fn sized<const COUNT: usize>(texture: &Texture<'_>, texels: &[u16; CO
     move |packed| texels[((packed & mask).wrapping_mul(multiplier) >> (32 - COUNT.trailing_zeros())) as usize]
 }
 
+/// The integer bits of u and v in units of 32 bits. For one texel 0 would do, but a shift by 32 is none: it has 1.
+#[inline]
+pub(crate) fn integer_bits(texture: &Texture<'_>) -> [u32; 2] {
+    texture.log2().map(|log2| log2.max(1))
+}
+
+/// The lines of u and v, in units of 32 bits. That of a side of one texel is 0 all along, as the one integer bit is to be.
+#[inline]
+pub(crate) fn lines_of(texture: &Texture<'_>, [u, v, ..]: &[Linear; ATTRIBUTES]) -> [Linear; 2] {
+    let [a, b] = texture.log2();
+    let none = Linear { at: 0, slope: 0 };
+    [if a == 0 { none } else { *u }, if b == 0 { none } else { *v }]
+}
+
 /// `Fill::longest_row` of texels. Packed, a step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel.
 #[inline]
 pub(crate) fn longest_row_of(texture: &Texture<'_>, is_packed: bool) -> i32 {
     if is_packed && texture.is_large() { 15 } else { STRAIGHT }
-}
-
-/// u (`i` = 0) or v of I16F16 times 2^`scale_log2`, without the bits for which packed coordinates have no room.
-#[inline]
-pub(crate) fn uv_in_units(
-    texture: &Texture<'_>,
-    is_packed: bool,
-    i: usize,
-    value: i32,
-    scale_log2: u32,
-) -> i32 {
-    if is_packed { value >> (texture.log2()[i].wrapping_sub(scale_log2) & 31) } else { value << scale_log2 }
 }
 
 /// The place of a run, whose first step of u is negative or not.

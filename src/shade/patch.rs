@@ -2,7 +2,7 @@
 //!
 //! - In: a small triangle that is set up, its rows, and the memory of a band.
 //! - Out: words and depths where the triangle is in front.
-//! - Assumes: the triangle is straight (or one quadratic), and at most 32 pixels wide and high.
+//! - Assumes: the triangle is straight (or one quadratic), at most 32 pixels wide and less high.
 //!
 //! A row of such a triangle has two or three pixels. To find which of them are visible, and to hand these to a loop that draws
 //! them, takes longer than to draw them, about 450 cycles on a Cortex-M0+: so nothing is handed on, and one loop tests a pixel's
@@ -11,52 +11,24 @@
 //!
 //! What a pixel shows depends on its triangle alone, not on what hides it or where the band begins: rows are shaded whole.
 
-use super::fill::{Each, Fill};
-use super::quality::Quality;
-use super::quality::sealed::Sealed;
+use super::cover::Cover;
+use super::fill::FillRow;
 use super::row::Row;
-use super::shader::Pixels;
 use crate::frame::DepthFormat;
 use crate::raster::{Rows, STRAIGHT, TriangleSetup};
 
-/// The pixels of a small straight triangle.
-pub(crate) struct Patch<'a, W, D: DepthFormat> {
-    pub(crate) setup: &'a TriangleSetup,
-    pub(crate) rows: &'a mut Rows,
-    /// Where column 0 of the first row would be among the pixels, wrapping, and from where to where it is a row further.
-    pub(crate) first: usize,
-    pub(crate) width: usize,
-    pub(crate) pixels: &'a mut [W],
-    /// None if it is never tested.
-    pub(crate) depth: &'a mut [D::Word],
-}
-
-impl<W, D: DepthFormat> Sealed for Patch<'_, W, D> {}
-
-impl<W: Copy, D: DepthFormat, Q: Quality> Pixels<W, Q> for Patch<'_, W, D> {
-    fn is_gray(&self) -> bool {
-        self.setup.gray
-    }
-
-    fn fill_evenly(self, word: W) {
-        self.draw(&Each::new(|[]: [i32; 0]| word));
-    }
-
-    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
-        self.draw(fill);
-    }
-}
-
-impl<W, D: DepthFormat> Patch<'_, W, D> {
-    /// Whether a triangle can be drawn so.
+impl<W, D: DepthFormat> Cover<'_, W, D> {
+    /// Whether a triangle is drawn at one go.
     #[inline]
-    pub(crate) fn takes(setup: &TriangleSetup, rows: &Rows) -> bool {
+    pub(crate) fn is_small(setup: &TriangleSetup, rows: &Rows) -> bool {
         setup.is_small && setup.straight && rows.are_simple()
     }
 
     #[inline(never)]
-    fn draw<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
-        let Self { setup, rows, first: mut row, width, pixels, depth } = self;
+    pub(super) fn draw_small<const N: usize, L: FillRow<N, Word = W>>(self, fill: &L) {
+        let Self { setup, rows, origin, width, pixels, depth, .. } = self;
+        // Where column 0 of the first row would be.
+        let mut row = origin.wrapping_add((rows.row() as usize).wrapping_mul(width));
         let Some(attributes) = setup.attributes.first_chunk::<N>() else {
             return;
         };
@@ -71,10 +43,11 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
         let mut near_w = setup.at(&setup.z, x, rows.row()).0;
         let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, x, rows.row()).0);
         let near_w_step = setup.z.steps[0];
-        // Hidden, so that the compiler keeps one number.
+        // Hidden, so that the compiler keeps the minimum, and not what it is of.
         let longest = core::hint::black_box(setup.longest.min(fill.longest_row()));
         let is_bent = setup.longest < STRAIGHT;
-        let scale_log2 = attributes.first().map_or(0, |attribute| attribute.scale_log2);
+        let scales = [0, 1].map(|i| attributes.get(i).map_or(0, |attribute| attribute.scale_log2));
+        let scale_log2 = scales[0] | scales[1] << 8;
         row = row.wrapping_add(x as usize);
         rows.each_simple([x, y], |n, mut m, end| {
             while m < end {
@@ -91,7 +64,7 @@ impl<W, D: DepthFormat> Patch<'_, W, D> {
                     } else {
                         value = value.wrapping_add_signed(right.wrapping_mul(m));
                     }
-                    (at[i], step[i]) = attribute.unscaled((value, right), steps);
+                    (at[i], step[i]) = attribute.along((value, right), steps);
                 }
                 let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
                 // In two steps: the end of a range is checked more dearly.

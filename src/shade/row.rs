@@ -18,7 +18,7 @@ pub struct Row<'a, W, D: DepthFormat> {
     pub(crate) near_w: u32,
     /// What it changes by from pixel to pixel.
     pub(crate) near_w_step: i32,
-    /// u and v, if there are any, are still to be shifted left by this, as by `Attribute::scale_log2`.
+    /// u and v, if there are any, are still to be shifted left by the two lower bytes of this, as by `Attribute::scale_log2`.
     pub(crate) scale_log2: u32,
 }
 
@@ -26,7 +26,7 @@ impl<W, D: DepthFormat> Row<'_, W, D> {
     /// By how much attribute `i` is still to be shifted left. (If there are no u and v the first two are colours, and this is 0.)
     #[inline]
     pub(crate) fn scale_log2(&self, i: usize) -> u32 {
-        if i < 2 { self.scale_log2 & 31 } else { 0 }
+        if i < 2 { self.scale_log2 >> (8 * i) & 31 } else { 0 }
     }
 
     /// Draws the pixels that are visible. `at` is what the first pixel's word is made of: its attributes, in whatever form.
@@ -42,7 +42,7 @@ impl<W, D: DepthFormat> Row<'_, W, D> {
             return;
         }
         for (pixel, stored) in self.pixels.iter_mut().zip(self.depth) {
-            if D::test_small(stored, U1F31::from_bits(self.near_w)) {
+            if D::test_and_store_small(stored, U1F31::from_bits(self.near_w)) {
                 *pixel = word(at);
             }
             self.near_w = self.near_w.wrapping_add_signed(self.near_w_step);

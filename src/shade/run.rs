@@ -1,10 +1,11 @@
-//! What is passed to a shader: a run, that is, a span of visible pixels with their memory.
+//! A run of pixels, all of which are drawn: what a picture that has no depth passes to a shader.
 //!
 //! - In: a span, and the words of its pixels.
 //! - Out: the same for a shader, as `Pixels` that it fills.
-//! - Assumes: all of the pixels are visible: depth was tested, if at all.
+//! - Assumes: nothing hides a pixel.
 
-use super::fill::Fill;
+use super::fill::{Fill, FillRow};
+use super::perspective::Perspective;
 use super::quality::Quality;
 use super::quality::sealed::Sealed;
 use super::shader::Pixels;
@@ -30,11 +31,22 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
     }
 
     #[inline]
-    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L) {
-        if self.span.is_straight() {
-            self.span.fill_straight(self.pixels, fill);
-        } else {
-            self.span.fill::<Q, N, L>(self.pixels, fill);
+    fn fill<const N: usize, L: Fill<W> + FillRow<N, Word = W>>(self, fill: &L) {
+        self.draw(fill);
+    }
+
+    #[inline]
+    fn fill_rows(self, fill: &dyn Fill<W>) {
+        self.draw(fill);
+    }
+}
+
+impl<W> Run<'_, W> {
+    #[inline(never)]
+    fn draw(self, fill: &dyn Fill<W>) {
+        let Span { setup, x, y } = self.span;
+        if !self.pixels.is_empty() {
+            Perspective::new(setup, fill.units()).draw(x, y, self.pixels, fill);
         }
     }
 }

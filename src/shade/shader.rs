@@ -1,10 +1,10 @@
-//! Shaders: what a pixel shows. [`walk`](super::walk) says how attributes get to it along a row.
+//! Shaders: what a pixel shows. [`perspective`](super::perspective) says how attributes get to it along a row.
 //!
 //! - In: the attributes at one pixel centre, or many pixels to choose a fill for.
 //! - Out: words.
 //! - Assumes: attributes lie in the range of the triangle's corners.
 
-use super::fill::{Each, Fill};
+use super::fill::{Each, Fill, FillRow};
 use super::quality::{Quality, sealed::Sealed};
 use crate::frame::PixelFormat;
 use crate::geometry::{Coloring, Cull, Inputs};
@@ -88,6 +88,13 @@ pub trait Shader<F: PixelFormat> {
         None
     }
 
+    /// Whether what it [paints](Shader::paint) has a loop for small triangles: it has unless it fills
+    /// [rows](Pixels::shade_rows). Attributes may be bent in such a loop only.
+    #[doc(hidden)]
+    fn has_small(&self) -> bool {
+        true
+    }
+
     /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
     /// ways to colour a pixel may do so here, once for many.
     fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {
@@ -142,7 +149,7 @@ pub trait Shader<F: PixelFormat> {
 ///     }
 /// }
 /// ```
-pub trait Pixels<W, Q>: Sealed + Sized {
+pub trait Pixels<W, Q: Quality>: Sealed + Sized {
     /// Whether the triangle's colours are greys: then there is one attribute for all three channels.
     fn is_gray(&self) -> bool;
 
@@ -150,13 +157,24 @@ pub trait Pixels<W, Q>: Sealed + Sized {
     fn fill_evenly(self, word: W);
 
     #[doc(hidden)]
-    fn fill<const N: usize, L: Fill<N, Word = W>>(self, fill: &L);
+    fn fill<const N: usize, L: Fill<W> + FillRow<N, Word = W>>(self, fill: &L);
+
+    /// Fills them row by row, small triangles too: without a loop of their own, most of a fill's flash.
+    #[doc(hidden)]
+    fn fill_rows(self, fill: &dyn Fill<W>);
 
     /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
     /// then red, green and blue, or one grey. They never leave the range of the triangle's corners, and u and v are less than the
     /// greatest value there, unless they are the same at all three. Of more than five attributes nothing is filled.
     #[inline]
     fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
-        self.fill(&Each::new(color));
+        self.fill(&Each::<N, Q, W, _>::new(color));
+    }
+
+    /// As [`Pixels::shade`], [row by row](Pixels::fill_rows).
+    #[doc(hidden)]
+    #[inline]
+    fn shade_rows<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
+        self.fill_rows(&Each::<N, Q, W, _>::new(color));
     }
 }

@@ -3,6 +3,7 @@
 
 #![allow(clippy::float_arithmetic, reason = "only the crate is to do without")]
 
+pub(crate) mod decoded;
 pub(crate) mod generate;
 pub(crate) mod perspective;
 pub(crate) mod scenes;
@@ -111,9 +112,15 @@ impl DepthFormat for Counting {
     type Word = Met;
     const CLEAR: Met = Met { times: 0, q: 0, hidden: false };
 
-    fn test(stored: &mut Met, z: U1F31) -> bool {
-        *stored = Met { times: stored.times + 1, q: z.to_bits(), ..*stored };
+    fn test(stored: &Met, _: U1F31) -> bool {
         !stored.hidden
+    }
+
+    fn store(_: &mut Met, _: U1F31) {}
+
+    fn test_and_store(stored: &mut Met, z: U1F31) -> bool {
+        *stored = Met { times: stored.times + 1, q: z.to_bits(), ..*stored };
+        Self::test(stored, z)
     }
 }
 

@@ -8,6 +8,7 @@
 
 #![allow(clippy::float_arithmetic, reason = "exact fractions are at last read as f64")]
 
+pub(crate) mod field;
 pub(crate) mod view;
 
 /// What a vertex carries beside its place: u, v, red, green, blue, each in units of 2⁻¹⁶.

@@ -7,26 +7,30 @@ use fixel::{DepthFormat, Quality, num::I12F4, prelude::*};
 
 /// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
 fn material(surface: u32) -> Material<'static> {
-    static CLAMPED: Texture = WALL.wrap(Wrap::Clamp);
     match surface {
         0 => Material::flat(Rgb565::CSS_TOMATO),
         1 => Material::gouraud(),
         2 => Material::textured(&WALL),
-        3 => Material::textured(&CLAMPED),
+        3 => Material::clamped(&WALL),
         4 => Material::textured(&WALL).lit(&LIGHTS),
         _ => Material::gouraud().lit(&LIGHTS),
     }
 }
 
 /// Three corners with everything that a surface may ask for; x and y are pixels at focal length 80, before the distance w.
-const fn triangle(corners: [[f32; 3]; 3]) -> [Vertex; 3] {
+/// Its texture is `texels` wide and high.
+const fn triangle(corners: [[f32; 3]; 3], texels: [i16; 2]) -> [Vertex; 3] {
     let [a, b, c] = corners;
+    let [width, height] = texels;
     [
         corner(a).uv(-2, 34).color(255, 64, 64).normal(0.0, 0.0, 1.0),
-        corner(b).uv(134, 34).color(64, 255, 64).normal(0.6, 0.0, 0.8),
-        corner(c).uv(-2, -38).color(64, 64, 255).normal(0.0, 0.6, 0.8),
+        corner(b).uv(width - 2, 34).color(64, 255, 64).normal(0.6, 0.0, 0.8),
+        corner(c).uv(-2, 34 - height).color(64, 64, 255).normal(0.0, 0.6, 0.8),
     ]
 }
+
+/// The texture of a large triangle: half a texel a pixel.
+const LARGE: [i16; 2] = [136, 72];
 
 #[expect(clippy::float_arithmetic, reason = "in constants only")]
 const fn corner([x, y, w]: [f32; 3]) -> Vertex {
@@ -34,14 +38,20 @@ const fn corner([x, y, w]: [f32; 3]) -> Vertex {
 }
 
 /// A triangle that hides all of a rectangle of 128×64, seen straight on: the viewport cuts it to one span a row.
-const STRAIGHT: Mesh =
-    Mesh::new(&triangle([[-68.0, -36.0, 1.0], [204.0, -36.0, 1.0], [-68.0, 108.0, 1.0]]), &[[0, 1, 2]]);
+const STRAIGHT: Mesh = Mesh::new(
+    &triangle([[-68.0, -36.0, 1.0], [204.0, -36.0, 1.0], [-68.0, 108.0, 1.0]], LARGE),
+    &[[0, 1, 2]],
+);
 /// The same on the screen, seven times as far away at the top as at the bottom: a floor seen level.
-const FLOOR: Mesh =
-    Mesh::new(&triangle([[-68.0, -36.0, 0.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]]), &[[0, 1, 2]]);
+const FLOOR: Mesh = Mesh::new(
+    &triangle([[-68.0, -36.0, 0.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]], LARGE),
+    &[[0, 1, 2]],
+);
 /// The same, seven times as far away at the left as at the right: a wall seen along.
-const WALL_ALONG: Mesh =
-    Mesh::new(&triangle([[-68.0, -36.0, 3.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]]), &[[0, 1, 2]]);
+const WALL_ALONG: Mesh = Mesh::new(
+    &triangle([[-68.0, -36.0, 3.5], [204.0, -36.0, 0.5], [-68.0, 108.0, 3.5]], LARGE),
+    &[[0, 1, 2]],
+);
 
 /// Width and height of the rectangles by their shape: bit 0 for wide, bit 1 for high. None is so narrow that a loop for
 /// short rows would be worth its while.
@@ -81,9 +91,9 @@ fn rectangle_of<D: DepthFormat, Q: Quality>(
     camera.draw(&mesh, &Pose::IDENTITY, material, frame);
 }
 
-/// A triangle of one pixel, and one of 6 rows with 21 pixels.
-const PIXEL: [Vertex; 3] = triangle([[0.1, -0.9, 1.0], [1.1, -0.9, 1.0], [0.1, 0.2, 1.0]]);
-const SMALL: [Vertex; 3] = triangle([[0.1, -5.9, 1.0], [6.9, -5.9, 1.0], [0.1, 0.9, 1.0]]);
+/// A triangle of one pixel, and one of 6 rows with 21 pixels: neither is seen straight on.
+const PIXEL: [Vertex; 3] = triangle([[0.1, -0.9, 1.0], [1.1, -0.9, 1.01], [0.1, 0.2, 1.01]], [2, 2]);
+const SMALL: [Vertex; 3] = triangle([[0.1, -5.9, 1.0], [6.9, -5.9, 1.03], [0.1, 0.9, 1.03]], [14, 14]);
 
 /// How many triangles the meshes have.
 pub const FEW: usize = 8;

@@ -1,13 +1,16 @@
-//! Light on a mesh whose pose does not keep angles: its normals and places are brought to where they stand.
+//! Stretch: normals and positions for light on a mesh whose pose does not keep angles.
 //!
-//! Of a pose that scales by S and then takes what is left through a matrix R, a place p goes to R·S·p. What is at right angles to a
-//! surface goes to (R·S)⁻ᵀ·n, which is cof(R)·cof(S)·n but for its length, and for its sign if R mirrors: a cofactor
-//! matrix needs no division, and there is one of a flat matrix, too.
+//! - In: the pose; normals and positions in the mesh.
+//! - Out: normals of the stretched surface and positions, along the axes in which the lights are given.
+//! - Assumes: nothing; no pose makes anything overflow.
 //!
-//! If R is a rotation or mirrors one, as most often, the lights are turned back by it, and only S is left to do: three short
-//! products a normal. If not, the lights stay in the axes of the world.
+//! Let S be the pose's scales and R its matrix. A position p goes to R·S·p. A normal n goes along (R·S)⁻ᵀ·n, the inverse
+//! transpose. That is cof(R)·cof(S)·n divided by the determinant, cof being the matrix of cofactors. Only its direction
+//! counts, and scales are never negative. So nothing is divided, and the sign is turned if det(R) < 0. Cofactors also exist
+//! of a matrix that makes things flat.
 //!
-//! In: the pose, and vectors in the mesh. Out: the same in the axes that the lights are in. Nothing overflows whatever the numbers.
+//! Most often R is a rotation or a reflection. Then the lights are turned back by R, once per mesh, and a normal takes cof(S)
+//! alone, three short products. For any other R the lights stay in the axes of the world, and normals take cof(R) too.
 
 use super::normal::{Direction, Normal, magnitude};
 use crate::math::{Pose, dot};
@@ -18,9 +21,9 @@ use core::array;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch<'p> {
     pose: &'p Pose,
-    /// cof(S), that is, for each axis the product of the other two's scales: 16 bits over 2^shift, in a common unit.
+    /// The diagonal of cof(S): for each axis the product of the other two scales, as 16 bits / 2^shift, in a common unit.
     factors: [u16; 3],
-    /// The shifts, at most 31, in five bits each. In the last bit whether R is neither a rotation nor mirrors one.
+    /// The shifts, 0 … 31, in five bits each, x in the lowest. Bit 15 says that R is neither a rotation nor a reflection.
     shifts: u16,
 }
 
@@ -43,34 +46,37 @@ impl<'p> Stretch<'p> {
         Some(stretch)
     }
 
+    /// Whether R is neither a rotation nor a reflection.
     fn is_of_any_matrix(&self) -> bool {
         self.shifts >> 15 != 0
     }
 
-    /// The axes that lights are brought to.
+    /// The axes, as columns, along which the lights have to be given: those of R, or of the world.
     pub(super) fn axes(&self) -> &'p [[I2F14; 3]; 3] {
         const UNTURNED: [[I2F14; 3]; 3] = Pose::IDENTITY.rotation;
         if self.is_of_any_matrix() { &UNTURNED } else { &self.pose.rotation }
     }
 
-    /// How many bits the largest scale has, at least 1.
+    /// How many bits the largest scale has as U10F22, at least 1.
     fn bits(&self) -> u32 {
         32 - self.pose.scale.iter().fold(1, |all, scale| all | scale.to_bits()).leading_zeros()
     }
 
-    /// The unit of [`Stretch::place`] in units of the world, as log₂: 4 to 8 times the largest scale. So a place has room: no
-    /// matrix in I2F14 makes a vector more than 6 times as long.
+    /// Log₂ of the unit of [`Stretch::place`] in units of the world: 4 to 8 times the largest scale. p is at
+    /// most 8·√3 long, and a row of R at most 2·√3. So a component of R·S·p is within 48 times the largest scale: 12 in this
+    /// unit.
     pub(super) fn unit_log2(&self) -> i32 {
         self.bits() as i32 - 20
     }
 
-    /// A place of the mesh as seen from its origin, in [its unit](Stretch::unit_log2), 26 fraction bits, within ±2²⁹·⁶.
+    /// A position from the mesh's origin, along [the axes](Stretch::axes) of the lights, in [this unit](Stretch::unit_log2)
+    /// with 26 fraction bits: within ±2²⁹·⁶.
     #[cold]
     #[inline(never)]
     pub(super) fn place(&self, position: [I4F12; 3]) -> [i32; 3] {
         let bits = self.bits();
         let scaled = array::from_fn(|i| {
-            // A unit in which the largest scale has 31 bits; 15 by 31 bits, to 30.
+            // Shifted so that the largest scale has 31 bits. 15 bits and a sign times 31 make 46; 30 are kept.
             let scale = (self.pose.scale[i].to_bits() << (32 - bits) >> 1) as i32;
             (wide(position[i].to_bits().into(), scale) >> 16) as i32
         });
@@ -81,18 +87,18 @@ impl<'p> Stretch<'p> {
         }
     }
 
-    /// A normal of the mesh at right angles to the stretched surface, as long as it was.
+    /// The normal of the stretched surface, from a vertex normal of the mesh, and as long as that.
     #[cold]
     #[inline(never)]
     pub(super) fn normal(&self, normal: Normal) -> Normal {
         self.across(normal.bits(), [0; 3]).times_length_of(normal)
     }
 
-    /// The normal of a face of the stretched mesh, from any vector at right angles to it in the mesh.
+    /// The normal of a face of the stretched mesh, from a vector of any length at right angles to the face in the mesh.
     #[cold]
     #[inline(never)]
     pub(super) fn face_normal(&self, across: [i32; 3]) -> Normal {
-        // 15 bits of each component by itself: what is small of it may become what is large.
+        // 15 bits of each component, with an exponent of its own: a small one may become the largest.
         let excess = across.map(|at| 17 - at.unsigned_abs().leading_zeros() as i32);
         let mantissas = array::from_fn(|i| {
             if excess[i] > 0 { across[i] >> excess[i] } else { across[i] << (-excess[i]).min(15) }
@@ -100,17 +106,20 @@ impl<'p> Stretch<'p> {
         self.across(mantissas, excess)
     }
 
-    /// The unit vector at right angles to the stretched surface, from one in the mesh: numbers of 16 bits times powers of two.
+    /// The unit normal of the stretched surface, from `vector` · 2^`exponents`, a normal in the mesh. Components of `vector`
+    /// have 15 bits and a sign.
     #[inline(never)]
     fn across(&self, vector: [i32; 3], exponents: [i32; 3]) -> Normal {
         let exponents: [i32; 3] = array::from_fn(|i| exponents[i] - i32::from(self.shifts >> (5 * i) & 31));
-        let scaled: [i32; 3] = array::from_fn(|i| vector[i] * i32::from(self.factors[i])); // below 2³¹
+        // cof(S)·n: 15 bits times 16.
+        let scaled: [i32; 3] = array::from_fn(|i| vector[i] * i32::from(self.factors[i]));
+        // To the largest exponent, all three.
         let most = (0..3).filter(|&i| scaled[i] != 0).map(|i| exponents[i]).max().unwrap_or(0);
         let scaled = array::from_fn(|i| scaled[i] >> (most - exponents[i]).clamp(0, 31));
         if self.is_of_any_matrix() { self.turned(scaled) } else { Normal::along(scaled) }
     }
 
-    /// By a matrix that is no rotation.
+    /// cof(R)·v as a unit normal, its sign turned if R mirrors.
     #[cold]
     #[inline(never)]
     fn turned(&self, vector: [i32; 3]) -> Normal {
@@ -119,7 +128,7 @@ impl<'p> Stretch<'p> {
         };
         let cofactors = self.pose.cofactors();
         let all = magnitude(array::from_fn(|i| magnitude(cofactors[i]) as i32));
-        // 14 bits: sums of three products are below 3 · 2²⁹.
+        // Cofactors are shortened alike, to 14 bits for the largest; the vector has 15: three products are below 3·2²⁹.
         let excess = 18 - all.leading_zeros() as i32;
         let shortened = |cofactor: i32| if excess > 0 { cofactor >> excess } else { cofactor << -excess };
         let turned = cofactors.map(|row| (0..3).map(|i| shortened(row[i]) * vector[i]).sum::<i32>());

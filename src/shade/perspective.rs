@@ -1,0 +1,306 @@
+//! Perspective along a row: attributes of a run of pixels as a product with 1/w, which a table has.
+//!
+//! - In: a triangle that is set up, and a run of pixels of one of its rows.
+//! - Out: the run, or parts of it, handed to a fill with what its attributes are made of: a [`Curve`].
+//! - Assumes: q is above 0 along the run.
+//!
+//! Along a row both q and (u − u₀)·q are linear. So u = A + B/q. A is the value that u tends to at the horizon, the same in all
+//! rows of a triangle: u₀ and the quotient of the steps of the two. Let the *near* end of a run be the one with the greater q,
+//! and w be q divided by that: it falls from 1 and, other than in the rest of the crate, is no vertex's w. Then
+//!
+//! ```text
+//! u = A + (u_near − A)/w
+//! ```
+//!
+//! A run takes one division, at its near end: by a reciprocal of q that is off by 2⁻²⁰ of itself. Where q falls by g of itself a
+//! pixel, D = 1/g pixels on it would be 0: that is how far away the *horizon* is. There are four ways to draw a run:
+//!
+//! - *Table* (D up to 176): 1/w from a table at every pixel. The table has an entry for every 1/1024 of w, so u is off by D/1024
+//!   pixels on the screen, 0.17, and rounding.
+//! - *Chords* (D above 176, and the far end 64 pixels or more from the horizon): with n the number of pixels from the
+//!   near end, n/w from the same table at every eighth pixel, and a straight line between. u = u_near + s·n/w, s
+//!   being its change over the first pixel. A chord of L pixels is off by L²/4h, h being how far the horizon is
+//!   there: by up to ¼, of which the errors of its ends take some.
+//! - *Distances* (shaders of users, textures that do not repeat, and [`Exact`](super::Exact)): n/w at every pixel. It
+//!   is off by n/1024 pixels at most, and n is at most 63; for `Exact` one step of Newton's iteration makes that
+//!   0.005.
+//! - *Straight*, where w changes so little that the tangent at the near end is off by n²/D ≤ 1/8 pixel.
+//!
+//! A run that is too long for any is cut in two. How far each way displaces a pixel at most a test of
+//! [`bent`](super::bent) computes.
+//!
+//! # Range
+//!
+//! The table is never too large, and slopes are cut towards zero. So attributes lie between u_near, which is kept in
+//! the corners' range, and what the plane says at the far end. That may be off: see [`TriangleSetup::contract`] for
+//! how far, and why it stays in the range. Where it would not, a slope is made from the values at both ends: in
+//! slivers, in `Exact`, and where distances differ much for the triangle's size, 62-fold at 100×100 pixels and 8-fold
+//! at 1024×1024.
+
+use super::curve::{Curve, Linear};
+use super::fill::{Fill, each_chord};
+use super::inverses::ONE_LOG2;
+use super::units::{Form, Units};
+use crate::math::recip::looked_up;
+use crate::num::{IS_ARMV6M, mul_17, mul_high, normalised};
+use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup};
+
+/// The step of w, 32 fraction bits, where the horizon is 176 pixels away.
+pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
+
+/// How a part of a row is drawn. `Table` looks 1/w up at every pixel; in the general forms n/w, which the head calls distances.
+pub(super) enum Way {
+    Straight,
+    Table,
+    Chords,
+    /// Not at one go: it is too long.
+    None,
+}
+
+/// The rows of a triangle, for a fill.
+pub(crate) struct Perspective<'a> {
+    pub(super) setup: &'a TriangleSetup,
+    pub(super) units: Units,
+    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on: in the way that all rows of the triangle
+    /// have in common. A part of one pixel is never too long.
+    way: fn(&mut Self, x: i32, y: i32, steps: u32) -> Way,
+    /// By how much `near_horizon` shifts each attribute left: [`Units::up`], computed once.
+    ups: [u8; ATTRIBUTES],
+    /// The leading zeros of q at the last division, which those at the next are close to.
+    zeros: u32,
+    pub(super) curve: Curve,
+}
+
+impl<'a> Perspective<'a> {
+    #[inline(never)]
+    pub(crate) fn new(setup: &'a TriangleSetup, units: Units) -> Self {
+        let fits_table = |(i, attribute): (usize, &Attribute)| {
+            attribute.horizon().1 == 0 && units.up(i, attribute) <= ONE_LOG2
+        };
+        let way = if setup.straight {
+            Self::straight
+        } else if setup.is_level {
+            Self::level
+        } else if units.form == Form::Modular
+            && !setup.is_extreme
+            && setup.attributes.iter().enumerate().take(units.count).all(fits_table)
+        {
+            Self::near_horizon
+        } else {
+            Self::bent
+        };
+        let mut ups = [0; ATTRIBUTES];
+        for (i, (up, attribute)) in ups.iter_mut().zip(&setup.attributes).enumerate() {
+            *up = units.up(i, attribute) as u8;
+        }
+        Self { setup, units, way, ups, zeros: 1, curve: Curve::default() }
+    }
+
+    /// q's mantissa at a pixel, 2³¹ … 2³² − 1, and its leading zeros. Not of a sliver.
+    #[inline(always)]
+    pub(super) fn q_at(&mut self, x: i32, y: i32) -> (u32, u32) {
+        self.mantissa_of(self.setup.q.at(x, y))
+    }
+
+    #[inline(always)]
+    pub(super) fn mantissa_of(&mut self, q: u32) -> (u32, u32) {
+        let q = self.setup.bounded(q);
+        let mantissa = q << self.zeros;
+        // Most often q has as many leading zeros as at the last division. Armv6-M has no instruction that counts them.
+        if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> self.zeros == q {
+            return (mantissa, self.zeros);
+        }
+        let mantissa;
+        (mantissa, self.zeros) = normalise(q);
+        (mantissa, self.zeros)
+    }
+
+    /// Draws pixels of a row, the first of which is (x, y).
+    #[inline(always)]
+    pub(crate) fn draw<W>(&mut self, x: i32, y: i32, pixels: &mut [W], fill: &dyn Fill<W>) {
+        match (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32) {
+            Way::Straight => fill.straight(pixels, &self.curve),
+            Way::Table => fill.table(pixels, &self.curve),
+            Way::Chords => self.draw_chords(pixels, fill),
+            Way::None => self.draw_parts(x, y, pixels, fill),
+        }
+    }
+
+    fn draw_chords<W>(&self, pixels: &mut [W], fill: &dyn Fill<W>) {
+        if !fill.chords(pixels, &self.curve) {
+            each_chord(pixels, &self.curve, fill);
+        }
+    }
+
+    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
+    #[cold]
+    #[inline(never)]
+    fn draw_parts<W>(&mut self, mut x: i32, y: i32, mut pixels: &mut [W], fill: &dyn Fill<W>) {
+        let mut count = pixels.len().div_ceil(2);
+        while !pixels.is_empty() {
+            let all = core::mem::take(&mut pixels);
+            let near_is_right = self.q_rises(x, y);
+            let way = loop {
+                let skipped = if near_is_right { all.len() - count } else { 0 };
+                match (self.way)(self, x + skipped as i32, y, count as u32 - 1) {
+                    Way::None => count = count.div_ceil(2),
+                    way => break way,
+                }
+            };
+            let (run, rest);
+            if near_is_right {
+                (rest, run) = all.split_at_mut(all.len() - count);
+            } else {
+                (run, rest) = all.split_at_mut(count);
+                x += count as i32;
+            }
+            match way {
+                Way::Table => fill.table(run, &self.curve),
+                Way::Chords => self.draw_chords(run, fill),
+                _ => fill.straight(run, &self.curve),
+            }
+            (count, pixels) = (rest.len(), rest);
+        }
+    }
+
+    /// Where q is the same all along.
+    #[inline(never)]
+    fn level(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        let (m, zeros) = self.q_at(x, y);
+        let q_step = self.setup.q.steps[0];
+        // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
+        if q_step != 0 && steps * steps * q_step.unsigned_abs() > m >> zeros >> 3 {
+            return self.bent(x, y, steps);
+        }
+        // `mul_17` takes steps below 2³⁰. Only a row of two pixels can have a greater one: it is drawn as two.
+        let is_steep = |attribute: &Attribute| attribute.plane.steps[0].unsigned_abs() >> 30 != 0;
+        if steps == 1 && self.setup.attributes.iter().take(self.units.count).any(is_steep) {
+            return Way::None;
+        }
+        let reciprocal = looked_up(m);
+        let (count, place) = (self.units.count, Place { x, y, reciprocal, zeros });
+        let (attributes, lines) = (&self.setup.attributes, &mut self.curve.lines);
+        level::<false>(&attributes[0], &place, q_step, steps, &mut lines[0]);
+        if count > 1 {
+            level::<true>(&attributes[1], &place, q_step, steps, &mut lines[1]);
+        }
+        for i in 2..count.min(ATTRIBUTES) {
+            level_further(&attributes[i], &place, q_step, steps, &mut lines[i]);
+        }
+        Way::Straight
+    }
+
+    /// Where the horizon is near.
+    #[inline(never)]
+    fn near_horizon(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        let setup = self.setup;
+        let x = if setup.q_rises { x + steps as i32 } else { x };
+        let (m, zeros) = self.q_at(x, y);
+        let near = Place { x, y, reciprocal: looked_up(m), zeros };
+        let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
+        let down = setup.q_step_zeros.wrapping_sub(zeros).wrapping_sub(3);
+        // What does not fit is for `bent`.
+        let w_step = if down < 32 { size >> down } else { 0 };
+        // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
+        if w_step < NEAR_STEP || (w_step >> 10) * steps > 7 << 19 {
+            return self.bent(if setup.q_rises { x - steps as i32 } else { x }, y, steps);
+        }
+        self.curve.set_w(setup.q_rises, w_step, steps);
+        // Two without a loop, which would take as long as what is in it.
+        let (count, ups, lines) = (self.units.count, &self.ups, &mut self.curve.lines);
+        set_table(&setup.attributes[0], &near, ups[0].into(), &mut lines[0]);
+        if count > 1 {
+            set_table(&setup.attributes[1], &near, ups[1].into(), &mut lines[1]);
+        }
+        for i in 2..count.min(ATTRIBUTES) {
+            set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+        }
+        Way::Table
+    }
+
+    #[inline(never)]
+    fn straight(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        let setup = self.setup;
+        for (i, attribute) in setup.attributes.iter().enumerate().take(self.units.count) {
+            let plane = setup.at(&attribute.plane, x, y);
+            if setup.leans && steps > 0 && attribute.leaves(plane, steps as i32) {
+                // Up to where it leaves its range an exact attribute stays so.
+                return Way::None;
+            }
+            let (at, step) = attribute.along(plane, steps as i32);
+            self.curve.lines[i] =
+                Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+        }
+        Way::Straight
+    }
+
+    /// Whether the near end of a row is at the right.
+    fn q_rises(&self, x: i32, y: i32) -> bool {
+        let setup = self.setup;
+        !setup.straight && if setup.sliver { setup.at_in_sliver(&setup.q, x, y).1 > 0 } else { setup.q_rises }
+    }
+}
+
+/// An attribute's straight line where q is the same all along.
+#[inline(always)]
+fn level<const IS_V: bool>(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, line: &mut Linear) {
+    let plane = &attribute.plane;
+    // 17 bits of 1/q do: the ends are held in the range.
+    let reciprocal = (place.reciprocal + (1 << 13)) >> 14;
+    let above = attribute.above(plane.at(place.x, place.y) as i32, reciprocal, place.zeros);
+    // Of three pixels or more, whose values are within ±2³⁰, a step is less than that.
+    let mut step = if steps > 0 { plane.steps[0] } else { 0 };
+    // Without it a row is off by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
+    if steps * q_step.unsigned_abs() > 1 << 12 {
+        step = step.wrapping_sub(bend_of_level(attribute, above, q_step));
+    }
+    let step = mul_17(step, reciprocal);
+    let down = attribute.shift - place.zeros as i32;
+    let step = if down >= 0 { step >> (down & 31) } else { step << (-down & 31) };
+    let line_of = if IS_V { Attribute::along_inside } else { Attribute::along };
+    let (at, step) = line_of(attribute, (above, step), steps as i32);
+    *line = Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+}
+
+/// (u − u₀)·q′ in units of the plane: what the step of (u − u₀)·q is more than q times the step of u. q′ is less than 2¹².
+#[inline(never)]
+fn bend_of_level(attribute: &Attribute, above: u32, q_step: i32) -> i32 {
+    let offset = (above as i32).clamp(0, attribute.range as i32).wrapping_add(attribute.low);
+    let up = attribute.shift.clamp(0, 19);
+    let size = mul_high(offset << (attribute.shift - up), q_step.unsigned_abs() << up);
+    if q_step < 0 { -size } else { size }
+}
+
+/// As [`level`], in a loop.
+#[inline(never)]
+fn level_further(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, line: &mut Linear) {
+    level::<false>(attribute, place, q_step, steps, line);
+}
+
+/// Sets an attribute's line in 1/w, shifted left by `up`; of a triangle that is no sliver, where the horizon is near
+/// and `up` is at most 13.
+///
+/// Not inlined on Armv6-M, where it needs all registers.
+#[inline(always)]
+fn set_table(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
+    let value = attribute.plane.at(near.x, near.y) as i32;
+    let above = attribute.divided(value, near.reciprocal, near.zeros);
+    let (u, way) = (attribute.least.wrapping_add(above), above.wrapping_sub(attribute.horizon().0));
+    // Cut towards zero.
+    let below_one = ((way >> 31) as u32 >> ((up + (31 - ONE_LOG2)) & 31)) >> 1;
+    let slope = way.wrapping_add_unsigned(below_one) >> ((ONE_LOG2 - up) & 31);
+    *line = Linear { at: (u << (up & 31)).wrapping_sub(slope << ONE_LOG2) as u32, slope };
+}
+
+/// As [`set_table`], in a loop.
+#[inline(never)]
+fn set_table_further(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
+    set_table(attribute, near, up, line);
+}
+
+/// Out of line on Armv6-M, where it takes half as long as the compiler's routine: see [`normalised`].
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn normalise(q: u32) -> (u32, u32) {
+    normalised(q)
+}

@@ -1,0 +1,53 @@
+//! What a fill wants of perspective: which attributes, and in which units.
+//!
+//! - In: an attribute in I16F16.
+//! - Out: how many bits to shift it left for the fill.
+//! - Assumes: nothing.
+
+use crate::raster::{ATTRIBUTES, Attribute};
+
+/// How a fill takes attributes that follow perspective.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Form {
+    /// A texture's period, or the 256 values of a colour, are all of 32 bits: so it repeats by overflow.
+    Modular,
+    /// As I16F16, within 1/8 pixel and the set-up's share.
+    General,
+    /// As I16F16, within 0.02 pixel.
+    Exact,
+}
+
+/// How many attributes a fill takes, and in which units.
+///
+/// In the modular form an attribute that repeats after 2^a has a integer bits and 32 − a fraction bits: what repeats needs no
+/// further care, and colours, 0 … 255.996, are a texture of 256 texels.
+#[derive(Clone, Copy, Debug)]
+pub struct Units {
+    pub(crate) form: Form,
+    pub(crate) count: usize,
+    /// By how much I16F16 is to be shifted left: 16 − a. Not of the general forms.
+    up: [u8; ATTRIBUTES],
+}
+
+impl Units {
+    /// I16F16.
+    pub(crate) const fn general(count: usize, is_exact: bool) -> Self {
+        let form = if is_exact { Form::Exact } else { Form::General };
+        Self { form, count, up: [0; ATTRIBUTES] }
+    }
+
+    /// Modular, with these numbers of integer bits.
+    pub(crate) fn modular<const N: usize>(integer_bits: [u32; N]) -> Self {
+        let mut up = [0; ATTRIBUTES];
+        for (up, bits) in up.iter_mut().zip(integer_bits) {
+            *up = 16 - bits as u8;
+        }
+        Self { form: Form::Modular, count: N, up }
+    }
+
+    /// Bits to shift attribute `i` left: to the unit of the fill, and by its `scale_log2`.
+    #[inline]
+    pub(crate) fn up(&self, i: usize, attribute: &Attribute) -> u32 {
+        (u32::from(self.up[i]) + attribute.scale_log2) & 31
+    }
+}
