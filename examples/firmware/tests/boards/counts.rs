@@ -1,19 +1,19 @@
 //! The instructions that the scenes of `bench` and `bands` take, against the table `counts.txt`: a change of speed is seen when it is made.
 
 use std::{
-    env,
+    cmp::Ordering,
     fmt::Write as _,
     fs,
     io::{self, Write as _},
-    process::Command,
 };
 
-use super::emulator::{Board, skipped};
+use super::{
+    cargo::rustc_version,
+    emulator::{Board, skipped},
+    table::{change, is_updated, made_with, number, percent},
+};
 
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/counts.txt");
-
-/// More than this is more than what another layout of the same code makes.
-const TOLERANCE_PERCENT: u64 = 2;
 
 const UPDATE: &str = "FIXEL_UPDATE_COUNTS=1 cargo test --test boards counts";
 
@@ -41,10 +41,6 @@ struct Row {
     instructions: [u64; BOARDS.len()],
 }
 
-fn number(text: &str) -> u64 {
-    text.parse().unwrap_or_else(|_| panic!("{text:?} is not a number"))
-}
-
 /// What the boards print: `s1 pixels 12510 instructions 272080`.
 fn measured() -> Vec<Row> {
     let mut rows = Vec::<Row>::new();
@@ -67,13 +63,6 @@ fn measured() -> Vec<Row> {
         }
     }
     rows
-}
-
-fn rustc_version() -> String {
-    let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-    let version = Command::new(rustc).arg("--version").output().expect("rustc runs").stdout;
-    // Number and no hash.
-    String::from_utf8_lossy(&version).split_whitespace().take(2).collect::<Vec<_>>().join(" ")
 }
 
 fn table(rows: &[Row]) -> String {
@@ -111,14 +100,13 @@ fn parsed(table: &str) -> Vec<Row> {
 
 /// What is wrong with a scene's count, if anything.
 fn judged(scene: &str, target: &str, before: u64, now: u64) -> Option<String> {
-    if now * 100 > before * (100 + TOLERANCE_PERCENT) {
-        Some(format!("{scene} on {target} got slower: {before} → {now} instructions"))
-    } else if now * 100 < before * (100 - TOLERANCE_PERCENT) {
-        Some(format!(
-            "{scene} on {target} got faster: {before} → {now} instructions; update the table, to keep what is won"
-        ))
-    } else {
-        None
+    let counts = format!("{before} → {now} instructions");
+    match change(before, now) {
+        Ordering::Greater => Some(format!("{scene} on {target} got slower: {counts}")),
+        Ordering::Less => {
+            Some(format!("{scene} on {target} got faster: {counts}; update the table, to keep what is won"))
+        }
+        Ordering::Equal => None,
     }
 }
 
@@ -128,7 +116,7 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
         return;
     }
     let now = measured();
-    if env::var_os("FIXEL_UPDATE_COUNTS").is_some_and(|value| value == "1") {
+    if is_updated() {
         fs::write(TABLE, table(&now)).expect("the table can be written");
     }
     let text = fs::read_to_string(TABLE).expect("the table is in this package");
@@ -146,7 +134,7 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
             let count = row.instructions[i];
             let _ = write!(report, "  {target} {count:>9}");
             if let Some(old) = old.map(|old| old.instructions[i]) {
-                let _ = write!(report, " {:+6.2} %", (count as f64 / old as f64 - 1.0) * 100.0);
+                let _ = write!(report, " {:+6.2} %", percent(old, count));
                 wrong.extend(judged(&row.scene, target, old, count));
             }
         }
@@ -161,18 +149,9 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
         wrong.is_empty(),
         "{}\n{report}The table was made with {}; this is {}. If the change is meant, in examples/firmware:\n    {UPDATE}",
         wrong.join("\n"),
-        text.lines().find_map(|line| line.strip_prefix("# Made with ")).unwrap_or("some rustc"),
+        made_with(&text),
         rustc_version(),
     );
-}
-
-#[test]
-fn two_percent_are_no_change_and_more_are() {
-    for now in [98_000, 100_000, 102_000] {
-        assert_eq!(judged("s1", "a board", 100_000, now), None);
-    }
-    assert!(judged("s1", "a board", 100_000, 102_001).is_some_and(|what| what.contains("slower")));
-    assert!(judged("s1", "a board", 100_000, 97_999).is_some_and(|what| what.contains("faster")));
 }
 
 #[test]

@@ -13,6 +13,8 @@ use std::{
 
 use object::{Object, ObjectSection, ObjectSymbol};
 
+use super::cargo;
+
 /// A run takes a second; a hang must fail before anyone loses patience.
 const TIMEOUT: Duration = Duration::from_secs(120);
 
@@ -49,41 +51,8 @@ pub(super) fn skipped() -> bool {
 }
 
 impl Board {
-    /// Compiles the program, in a target directory of its own: the outer cargo may hold the lock of its.
     fn build(&self) -> PathBuf {
-        let directory = scratch().join("boards");
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo
-            .args(["build", "--release", "--locked", "--bin", self.program, "--target", self.target])
-            .args(["--features", self.features])
-            .args(["--manifest-path", concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")])
-            .arg("--target-dir")
-            .arg(&directory);
-
-        let rustc = env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-        let sysroot = Command::new(rustc).args(["--print", "sysroot"]).output();
-        let sysroot = sysroot.expect("rustc runs").stdout;
-        let rustlib = Path::new(String::from_utf8_lossy(&sysroot).trim()).join("lib/rustlib");
-        if !rustlib.join(self.target).join("lib").exists() {
-            // Where rustup cannot add the target, `core` may still be there as source.
-            assert!(
-                rustlib.join("src/rust/library/core").exists(),
-                "this machine cannot build for {0}: run `rustup target add {0}`, \
-                 or skip the boards by FIXEL_SKIP_BOARDS=1",
-                self.target
-            );
-            cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_UNSTABLE_BUILD_STD", "core");
-        }
-
-        let output = cargo.output().expect("cargo runs");
-        assert!(
-            output.status.success(),
-            "{} does not build for {}:\n{}",
-            self.program,
-            self.target,
-            String::from_utf8_lossy(&output.stderr)
-        );
-        directory.join(self.target).join("release").join(self.program)
+        cargo::build(&[self.program], self.features, self.target, "").join(self.program)
     }
 
     /// The program's variables in RAM by their names, with their bytes, as the linker placed them; and the bytes from the

@@ -1,14 +1,17 @@
 //! The boards against the desktop: the programs run under `qemu-system-arm`, and have to print the
 //! checksums and to leave the picture that this machine computes.
 //!
-//! The instructions of `bench`'s scenes are held against a table.
+//! The instructions of `bench`'s scenes and the flash of the small programs are held against tables.
 //!
 //! Needs QEMU and rustup's targets thumbv6m-none-eabi, thumbv7m-none-eabi and thumbv7em-none-eabihf, and fails without;
 //! `FIXEL_SKIP_BOARDS=1` skips it.
 
 mod bands;
+mod cargo;
 mod counts;
 mod emulator;
+mod flash;
+mod table;
 
 use std::{
     fs,

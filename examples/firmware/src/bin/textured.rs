@@ -1,0 +1,19 @@
+//! A turning cube with a texture that repeats, and nothing else: no light, no blended colours, nothing clamped.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[path = "../screen.rs"]
+mod screen;
+
+use fixel::{Textured, Turn};
+use fixel_firmware::cube::{BRICK, CAMERA, CUBE, Screen, pose};
+
+fn draw(turn: Turn, screen: &mut Screen<'_>) {
+    let material = Textured::new(&BRICK);
+    CAMERA.draw(&CUBE, &pose(turn), &material, screen);
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    screen::print();
+}
