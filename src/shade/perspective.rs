@@ -168,9 +168,15 @@ impl<'a> Perspective<'a> {
     fn level(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let (m, zeros) = self.q_at(x, y);
         let q_step = self.setup.q.steps[0];
-        // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
-        if q_step != 0 && steps * steps * q_step.unsigned_abs() > m >> zeros >> 3 {
-            return self.bent(x, y, steps);
+        let mut bends = false;
+        if q_step != 0 {
+            // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
+            let fall = steps * q_step.unsigned_abs();
+            if steps * fall > m >> zeros >> 3 {
+                return self.bent(x, y, steps);
+            }
+            // Taken as constant, q moves a row by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
+            bends = fall > 1 << 12;
         }
         // `mul_17` takes steps below 2³⁰. Only a row of two pixels can have a greater one: it is drawn as two.
         let is_steep = |attribute: &Attribute| attribute.plane.steps[0].unsigned_abs() >> 30 != 0;
@@ -179,15 +185,29 @@ impl<'a> Perspective<'a> {
         }
         let reciprocal = looked_up(m);
         let (count, place) = (self.units.count, Place { x, y, reciprocal, zeros });
+        if bends {
+            self.level_bending(&place, q_step, steps);
+            return Way::Straight;
+        }
         let (attributes, lines) = (&self.setup.attributes, &mut self.curve.lines);
-        level::<false>(&attributes[0], &place, q_step, steps, &mut lines[0]);
+        level(&attributes[0], &place, 0, steps, false, &mut lines[0]);
         if count > 1 {
-            level::<true>(&attributes[1], &place, q_step, steps, &mut lines[1]);
+            level(&attributes[1], &place, 0, steps, true, &mut lines[1]);
         }
         for i in 2..count.min(ATTRIBUTES) {
-            level_further(&attributes[i], &place, q_step, steps, &mut lines[i]);
+            level_further(&attributes[i], &place, 0, steps, false, &mut lines[i]);
         }
         Way::Straight
+    }
+
+    /// Where q is nearly the same all along a long row.
+    #[cold]
+    #[inline(never)]
+    fn level_bending(&mut self, place: &Place, q_step: i32, steps: u32) {
+        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
+        for (i, (attribute, line)) in all.enumerate().take(self.units.count) {
+            level_further(attribute, place, q_step, steps, i == 1, line);
+        }
     }
 
     /// Where the horizon is near.
@@ -241,23 +261,22 @@ impl<'a> Perspective<'a> {
     }
 }
 
-/// An attribute's straight line where q is the same all along.
+/// An attribute's straight line where q is the same all along, or with its step where it nearly is; v keeps from its ends.
 #[inline(always)]
-fn level<const IS_V: bool>(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, line: &mut Linear) {
+fn level(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, is_v: bool, line: &mut Linear) {
     let plane = &attribute.plane;
     // 17 bits of 1/q do: the ends are held in the range.
     let reciprocal = (place.reciprocal + (1 << 13)) >> 14;
     let above = attribute.above(plane.at(place.x, place.y) as i32, reciprocal, place.zeros);
     // Of three pixels or more, whose values are within ±2³⁰, a step is less than that.
     let mut step = if steps > 0 { plane.steps[0] } else { 0 };
-    // Without it a row is off by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
-    if steps * q_step.unsigned_abs() > 1 << 12 {
+    if q_step != 0 {
         step = step.wrapping_sub(bend_of_level(attribute, above, q_step));
     }
     let step = mul_17(step, reciprocal);
     let down = attribute.shift - place.zeros as i32;
     let step = if down >= 0 { step >> (down & 31) } else { step << (-down & 31) };
-    let line_of = if IS_V { Attribute::along_inside } else { Attribute::along };
+    let line_of = if is_v { Attribute::along_inside } else { Attribute::along };
     let (at, step) = line_of(attribute, (above, step), steps as i32);
     *line = Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
 }
@@ -273,8 +292,15 @@ fn bend_of_level(attribute: &Attribute, above: u32, q_step: i32) -> i32 {
 
 /// As [`level`], in a loop.
 #[inline(never)]
-fn level_further(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, line: &mut Linear) {
-    level::<false>(attribute, place, q_step, steps, line);
+fn level_further(
+    attribute: &Attribute,
+    place: &Place,
+    q_step: i32,
+    steps: u32,
+    is_v: bool,
+    line: &mut Linear,
+) {
+    level(attribute, place, q_step, steps, is_v, line);
 }
 
 /// Sets an attribute's line in 1/w, shifted left by `up`; of a triangle that is no sliver, where the horizon is near
