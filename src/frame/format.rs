@@ -143,25 +143,72 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
         F::rgb888(red, green, blue).to_be()
     }
 
-    const KEEPS: bool = true;
+    const KEEPS: bool = F::KEEPS;
 
     #[inline]
     fn keep(bits: u16) -> u16 {
-        bits
+        F::keep(bits)
     }
 
     #[inline]
     fn kept(word: u16) -> u16 {
-        word
+        F::kept(word)
     }
 
     #[inline]
     fn texel(word: u16) -> u16 {
-        u16::from_be(word)
+        F::texel(u16::from_be(word))
     }
 
     #[inline]
     fn gray(level: u8) -> u16 {
         F::gray(level).to_be()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_graphics::pixelcolor::Bgr565;
+
+    /// A format of a user, whose words are no RGB565.
+    struct Swapped;
+
+    impl PixelFormat for Swapped {
+        type Word = u16;
+        type Color = Bgr565;
+
+        fn encode(color: Bgr565) -> u16 {
+            RawU16::from(color).into_inner()
+        }
+
+        fn decode(word: u16) -> Bgr565 {
+            RawU16::new(word).into()
+        }
+
+        fn rgb565(bits: u16) -> u16 {
+            bits << 11 | bits & 0x07e0 | bits >> 11
+        }
+
+        fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
+            Rgb565::rgb888(blue, green, red)
+        }
+    }
+
+    /// Where words keep what a pass leaves in them, it comes back, and so does a texel.
+    fn keeps<F: PixelFormat>() -> bool {
+        (0..=u16::MAX).all(|bits| F::kept(F::keep(bits)) == bits && F::texel(F::rgb565(bits)) == bits)
+    }
+
+    #[test]
+    fn a_format_keeps_all_texels_if_it_says_so() {
+        for (says, keeps) in [
+            (Rgb565::KEEPS, keeps::<Rgb565>()),
+            (BigEndian::<Rgb565>::KEEPS, keeps::<BigEndian<Rgb565>>()),
+            (Swapped::KEEPS, keeps::<Swapped>()),
+            (BigEndian::<Swapped>::KEEPS, keeps::<BigEndian<Swapped>>()),
+        ] {
+            assert_eq!(says, keeps);
+        }
     }
 }
