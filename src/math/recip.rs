@@ -56,6 +56,13 @@ impl Reciprocal {
         Self { mantissa: looked_up(m).min(i32::MAX as u32) as i32, zeros }
     }
 
+    /// A mantissa that is not too large, from the table's: for a step that must not lead beyond its end.
+    #[inline]
+    pub(crate) fn mantissa_below(&self) -> i32 {
+        // 2⁻¹⁹ of itself less, which is more than its error.
+        self.mantissa - (self.mantissa >> 19)
+    }
+
     /// From the table and one Newton–Raphson step: relative error below 2⁻³⁰, for divisors below 2³¹. (From there on half of `m`
     /// would lose a bit.) A divisor of 0 counts as 1.
     #[inline]

@@ -250,7 +250,7 @@ static INVERSES: [i32; 32] = {
 fn inverse(steps: usize) -> i32 {
     INVERSES.get(steps).copied().unwrap_or_else(|| {
         let reciprocal = Reciprocal::coarse(steps as u32);
-        (reciprocal.mantissa - (reciprocal.mantissa >> 19)) >> (31 - reciprocal.zeros)
+        reciprocal.mantissa_below() >> (31 - reciprocal.zeros)
     })
 }
 

@@ -218,8 +218,7 @@ impl Perspective<'_> {
             (_, form) => distance(form, w, steps),
         };
         let t = Reciprocal::coarse(t);
-        // Lowered by 2⁻¹⁹ of itself, more than it may be too large.
-        let mantissa = t.mantissa - (t.mantissa >> 19);
+        let mantissa = t.mantissa_below();
         for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
             let [above, above_far] = ends(attribute);
             let (u, rise) = (attribute.least.wrapping_add(above), above_far - above);

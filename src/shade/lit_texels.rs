@@ -11,7 +11,9 @@ use super::channels::{Channels, lit};
 use super::curve::{Curve, Linear};
 use super::fill::{Fill, FillRow, plus, some_of};
 use super::inverses::inverse;
-use super::packed::{integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, turned};
+use super::packed::{
+    downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, turned,
+};
 use super::row::Row;
 use super::texels::{Texels, packed_chord};
 use super::units::Units;
@@ -57,7 +59,7 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
         [at, step]: [[i32; 2]; 2],
         [mut light, light_step]: [C; 2],
     ) {
-        let [u_down, v_down] = integer_bits(self.texture).map(|bits| (32 - bits) & 31);
+        let [u_down, v_down] = downs(self.texture);
         let (texture, mut at) = (*self.texture, at);
         for pixel in pixels {
             let texel = texture.fetch_repeat(at[0] >> u_down, at[1] >> v_down);
@@ -85,7 +87,7 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
     #[inline(never)]
     fn table_at_once(&self, pixels: &mut [F::Word], curve: &Curve) {
         let ([a, _], [u, v]) = (self.texture.log2(), lines_of(self.texture, &curve.lines));
-        let [u_down, v_down] = integer_bits(self.texture).map(|bits| (32 - bits) & 31);
+        let [u_down, v_down] = downs(self.texture);
         let lines = some_of::<M, _>(&curve.lines, 2);
         let texels = self.texture.texels();
         let (mut w, w_step) = (curve.w, curve.w_step);

@@ -238,8 +238,8 @@ impl<F: PixelFormat, Q: Quality> Shader<F> for Material<'_, Q> {
     }
 }
 
-/// A [`Material`] that is a texture which repeats, and can be nothing else: a program that draws with no other is
-/// about half as large as with [`Material`], which has loops for every surface.
+/// A [`Material`] that is a texture which repeats, and can be nothing else: a program that draws with no other has
+/// two thirds of the code that it has with [`Material`], which has loops for every surface.
 ///
 /// ```
 /// use fixel::{Material, Texture, Textured};

@@ -17,6 +17,12 @@ pub(crate) fn integer_bits(texture: &Texture<'_>) -> [u32; 2] {
     texture.log2().map(|log2| log2.max(1))
 }
 
+/// The fraction bits of u and v in units of 32 bits: by so much to the right they are whole texels.
+#[inline]
+pub(crate) fn downs(texture: &Texture<'_>) -> [u32; 2] {
+    integer_bits(texture).map(|bits| (32 - bits) & 31)
+}
+
 /// The lines of u and v, in units of 32 bits. That of a side of one texel is 0 all along, as the one integer bit is to be.
 #[inline]
 pub(crate) fn lines_of(texture: &Texture<'_>, [u, v, ..]: &[Linear; ATTRIBUTES]) -> [Linear; 2] {

@@ -27,7 +27,7 @@ use super::curve::{CHORD, Chords, Curve, Linear, MOST_IN_CHORDS};
 use super::fill::{Fill, FillRow, plus, slope_of_chord};
 use super::inverses::{inverse, leave};
 use super::packed::{
-    integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, sized, turned,
+    downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, sized, turned,
 };
 use super::row::Row;
 use super::units::Units;
@@ -217,7 +217,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     #[inline(never)]
     fn table_any(&self, pixels: &mut [F::Word], curve: &Curve) {
         let ([a, _], texels) = (self.texture.log2(), self.texture.texels());
-        let [u_down, v_down] = integer_bits(self.texture).map(|bits| (32 - bits) & 31);
+        let [u_down, v_down] = downs(self.texture);
         self.table_of(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
             let index = (v >> v_down) << a | u >> u_down;
             texels.get(index as usize).copied().unwrap_or_default()
@@ -309,7 +309,7 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
         let [u, v, ..] = lines;
-        let [u_down, v_down] = integer_bits(self.texture).map(|bits| (32 - bits) & 31);
+        let [u_down, v_down] = downs(self.texture);
         let (texture, mut at) = (*self.texture, [u.at, v.at]);
         for pixel in pixels {
             let [u_at, v_at] = [at[0] >> u_down, at[1] >> v_down];
@@ -378,7 +378,7 @@ pub(super) mod tests {
 
     fn both<F: PixelFormat<Word = u16>>(texture: &Texture<'_>, curve: &Curve, count: usize) -> [Vec<u16>; 2] {
         let [u, v, ..] = lines_of(texture, &curve.lines);
-        let [u_down, v_down] = integer_bits(texture).map(|bits| (32 - bits) & 31);
+        let [u_down, v_down] = downs(texture);
         let word = |t: u32| {
             F::rgb565(texture.fetch_repeat((u.value(t) >> u_down) as i32, (v.value(t) >> v_down) as i32))
         };
