@@ -91,12 +91,13 @@ pub(crate) fn piece(polygon: &[ScreenVertex], number: usize) -> Option<[&ScreenV
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::num::I12F4;
     use std::vec::Vec;
 
-    fn polygon(places: &[[i16; 2]]) -> Vec<ScreenVertex> {
+    /// Of vertices at these places, in 1/16 px.
+    pub(crate) fn polygon(places: &[[i16; 2]]) -> Vec<ScreenVertex> {
         let place = |&[x, y]: &[i16; 2]| {
             let [x, y] = [x, y].map(I12F4::from_bits);
             ScreenVertex { x, y, ..Default::default() }

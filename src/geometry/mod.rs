@@ -16,6 +16,8 @@ pub use coloring::Coloring;
 pub(crate) use coloring::{dim, is_gray};
 pub(crate) use cut::MOST_CORNERS;
 pub(crate) use fan::piece;
+#[cfg(test)]
+pub(crate) use fan::tests::polygon;
 pub use orient::Cull;
 pub(crate) use orient::{Oriented, area, in_order, position};
 pub use screen::{Inputs, RangeError, ScreenVertex};

@@ -136,17 +136,8 @@ fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Cull, area};
-    use crate::num::I12F4;
+    use crate::geometry::{Cull, area, polygon};
     use std::vec::Vec;
-
-    fn polygon(places: &[[i16; 2]]) -> Vec<ScreenVertex> {
-        let place = |&[x, y]: &[i16; 2]| {
-            let [x, y] = [x, y].map(I12F4::from_bits);
-            ScreenVertex { x, y, ..Default::default() }
-        };
-        places.iter().map(place).collect()
-    }
 
     /// How often a polygon goes around a pixel's centre, clockwise, by the edges that cross the row left of it; and the
     /// centres on edges as if they lay a little further to the right, and less down.

@@ -1,16 +1,11 @@
 //! The instructions that the scenes of `bench` and `bands` take, against the table `counts.txt`: a change of speed is seen when it is made.
 
-use std::{
-    cmp::Ordering,
-    fmt::Write as _,
-    fs,
-    io::{self, Write as _},
-};
+use std::{fmt::Write as _, fs};
 
 use super::{
     cargo::rustc_version,
     emulator::{Board, skipped},
-    table::{change, is_updated, made_with, number, percent},
+    table::{conclude, is_updated, judged, number, percent},
 };
 
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/counts.txt");
@@ -98,18 +93,6 @@ fn parsed(table: &str) -> Vec<Row> {
         .collect()
 }
 
-/// What is wrong with a scene's count, if anything.
-fn judged(scene: &str, target: &str, before: u64, now: u64) -> Option<String> {
-    let counts = format!("{before} → {now} instructions");
-    match change(before, now) {
-        Ordering::Greater => Some(format!("{scene} on {target} got slower: {counts}")),
-        Ordering::Less => {
-            Some(format!("{scene} on {target} got faster: {counts}; update the table, to keep what is won"))
-        }
-        Ordering::Equal => None,
-    }
-}
-
 #[test]
 fn the_counts_of_the_scenes_are_those_of_the_table() {
     if skipped() {
@@ -135,7 +118,8 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
             let _ = write!(report, "  {target} {count:>9}");
             if let Some(old) = old.map(|old| old.instructions[i]) {
                 let _ = write!(report, " {:+6.2} %", percent(old, count));
-                wrong.extend(judged(&row.scene, target, old, count));
+                let what = format!("{} on {target}", row.scene);
+                wrong.extend(judged(&what, "instructions", ["slower", "faster"], old, count));
             }
         }
         report.push('\n');
@@ -143,15 +127,7 @@ fn the_counts_of_the_scenes_are_those_of_the_table() {
     for old in before.iter().filter(|old| now.iter().all(|row| row.scene != old.scene)) {
         wrong.push(format!("{} is in the table, but not drawn", old.scene));
     }
-    // Past the test harness's capture: the numbers are worth a look when all is well, too.
-    let _ = io::stderr().write_all(report.as_bytes());
-    assert!(
-        wrong.is_empty(),
-        "{}\n{report}The table was made with {}; this is {}. If the change is meant, in examples/firmware:\n    {UPDATE}",
-        wrong.join("\n"),
-        made_with(&text),
-        rustc_version(),
-    );
+    conclude(&report, &wrong, &text, UPDATE);
 }
 
 #[test]

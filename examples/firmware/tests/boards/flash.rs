@@ -1,20 +1,13 @@
 //! The flash of the small programs, against the table `flash.txt`; and what they must not link, by the names of their functions.
 
-use std::{
-    cmp::Ordering,
-    collections::BTreeSet,
-    fmt::Write as _,
-    fs,
-    io::{self, Write as _},
-    path::Path,
-};
+use std::{collections::BTreeSet, fmt::Write as _, fs, path::Path};
 
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use super::{
     cargo::{self, rustc_version},
     emulator::skipped,
-    table::{change, is_updated, made_with, number, percent},
+    table::{self, conclude, is_updated, number, percent},
 };
 
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/flash.txt");
@@ -138,15 +131,8 @@ fn parsed(table: &str) -> Vec<Row> {
 
 /// What is wrong with a program's flash, if anything.
 fn judged(before: &Row, now: &Row) -> Option<String> {
-    let (program, target) = (&now.program, &now.target);
-    let bytes = format!("{} → {} bytes", before.held(), now.held());
-    match change(before.held(), now.held()) {
-        Ordering::Greater => Some(format!("{program} for {target} got larger: {bytes}")),
-        Ordering::Less => Some(format!(
-            "{program} for {target} got smaller: {bytes}; update the table, to keep what is won"
-        )),
-        Ordering::Equal => None,
-    }
+    let what = format!("{} for {}", now.program, now.target);
+    table::judged(&what, "bytes", ["larger", "smaller"], before.held(), now.held())
 }
 
 /// One test for both, as they read the same programs.
@@ -181,15 +167,7 @@ fn the_flash_of_the_small_programs_is_that_of_the_table_and_they_link_only_what_
     for old in before.iter().filter(|old| !is_row_of(old)) {
         wrong.push(format!("{} for {} is in the table, but not built", old.program, old.target));
     }
-    // Past the test harness's capture: the numbers are worth a look when all is well, too.
-    let _ = io::stderr().write_all(report.as_bytes());
-    assert!(
-        wrong.is_empty(),
-        "{}\n{report}The table was made with {}; this is {}. If the change is meant, in examples/firmware:\n    {UPDATE}",
-        wrong.join("\n"),
-        made_with(&text),
-        rustc_version(),
-    );
+    conclude(&report, &wrong, &text, UPDATE);
 
     for target in TARGETS {
         let linked = |program: &str, what: &str| -> Vec<&str> {
