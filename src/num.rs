@@ -145,6 +145,13 @@ pub(crate) const fn normalised(value: u32) -> (u32, u32) {
     }
 }
 
+/// As [`normalised`], out of line on Armv6-M: still half as long as the compiler's routine.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn normalise(value: u32) -> (u32, u32) {
+    normalised(value)
+}
+
 #[inline(always)]
 const fn normalised_stepwise(mut value: u32) -> (u32, u32) {
     let mut zeros = 0;
@@ -161,6 +168,14 @@ const fn normalised_stepwise(mut value: u32) -> (u32, u32) {
 #[inline]
 pub(crate) const fn shift_round(value: i64, shift: u32) -> i64 {
     if shift == 0 { value } else { ((value >> (shift - 1)) + 1) >> 1 }
+}
+
+/// As [`shift_round`], for a `shift` of 1 … 32 and a result of at most 31 bits with the sign.
+#[inline]
+pub(crate) const fn shift_round_short(value: i64, shift: u32) -> i32 {
+    let down = (shift - 1) & 31;
+    let bits = (value as u32 >> down) | ((value >> 32) as u32) << 1 << (31 - down);
+    (bits as i32 + 1) >> 1
 }
 
 /// The raw bits of `value` in a format with `fraction_bits`, rounded to nearest and saturated to

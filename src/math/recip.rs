@@ -13,7 +13,7 @@
 //!
 //! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::{normalised, wide};
+use crate::num::{normalise, normalised, wide};
 
 const INTERVALS: usize = 512;
 
@@ -45,8 +45,8 @@ impl Reciprocal {
     /// From the table: relative error below 2⁻²⁰. A divisor of 0 counts as 1.
     #[inline]
     pub(crate) fn coarse(divisor: u32) -> Self {
-        let divisor = divisor.max(1);
-        Self::coarse_normalised(divisor << divisor.leading_zeros(), divisor.leading_zeros())
+        let (m, zeros) = normalise(divisor.max(1));
+        Self::coarse_normalised(m, zeros)
     }
 
     /// As [`Reciprocal::coarse`], from a normalised divisor `m`, 2³¹ … 2³² − 1, and the leading zeros that it had.
@@ -67,9 +67,8 @@ impl Reciprocal {
     /// would lose a bit.) A divisor of 0 counts as 1.
     #[inline]
     pub(crate) fn precise(divisor: u32) -> Self {
-        let divisor = divisor.max(1);
-        let zeros = divisor.leading_zeros();
-        Self::precise_normalised(divisor << zeros, zeros)
+        let (m, zeros) = normalise(divisor.max(1));
+        Self::precise_normalised(m, zeros)
     }
 
     /// From the mantissa `m`, 2³¹ … 2³² − 1.
@@ -80,8 +79,8 @@ impl Reciprocal {
         // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹, and y += y·r/2⁶¹.
         let r = (1 << 61) - wide(half_m, mantissa);
         let step = (wide(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
-        let mantissa = (i64::from(mantissa) + step).min(i64::from(i32::MAX)) as i32;
-        Self { mantissa, zeros }
+        let mantissa = (mantissa as u32).wrapping_add_signed(step as i32).min(i32::MAX as u32);
+        Self { mantissa: mantissa as i32, zeros }
     }
 
     /// The quotient `numerator / divisor`, rounded down, and the remainder 0 … `divisor` − 1. `self` is the precise

@@ -47,15 +47,7 @@ impl Attribute {
         0u32.wrapping_sub(self.low as u32)
     }
 
-    /// Between I16F16 values at the corners, without a plane; and by how much it rises from corner 0 to 1 and 2.
-    #[inline]
-    pub(crate) fn between(at: [i32; 3], scale_log2: u32) -> (Self, [i32; 2]) {
-        let mut attribute = Self::default();
-        let rise = attribute.set_range(at, scale_log2);
-        (attribute, rise)
-    }
-
-    /// As [`Attribute::between`], in place: all but the plane and what goes with that stays.
+    /// Sets the range from I16F16 values at the corners; all but that stays. Returns by how much it rises from corner 0 to 1 and 2.
     #[inline]
     pub(crate) fn set_range(&mut self, at: [i32; 3], scale_log2: u32) -> [i32; 2] {
         let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
@@ -65,6 +57,21 @@ impl Attribute {
         self.range = high.wrapping_sub(low) as u32;
         self.scale_log2 = scale_log2;
         rise
+    }
+
+    /// Moves the values at the corners towards the middle of their range, each by 2^−`shift` of its way there. Takes and returns
+    /// by how much they rise from corner 0 to 1 and 2.
+    #[inline]
+    pub(super) fn draw_in(&mut self, rise: [i32; 2], shift: u32) -> [i32; 2] {
+        let (half, range) = ((self.range >> 1) as i32, self.range as i32);
+        // From corner 0, as rises are.
+        let middle = self.low + half;
+        let first = middle >> shift;
+        let (up, down) = (half >> shift, (half - range) >> shift);
+        self.least = self.least.wrapping_add(up);
+        self.low += up - first;
+        self.range = (range + down - up) as u32;
+        rise.map(|rise| rise + ((middle - rise) >> shift) - first)
     }
 
     /// Makes the range of a texture coordinate end below its greatest value. One that is the same at all corners stays what it is.
@@ -103,7 +110,7 @@ impl Attribute {
     /// corners stays what it is. If it may be packed, which takes an inset of more than 2, it is in the middle of its texel.
     #[cold]
     #[inline(never)]
-    fn keep_amid(&mut self, inset: u32) {
+    pub(super) fn keep_amid(&mut self, inset: u32) {
         let texel = 0x10000 >> self.scale_log2;
         self.least = self.least.wrapping_add_unsigned(self.range >> 1);
         if inset > 2 {
@@ -149,7 +156,7 @@ impl Attribute {
     }
 
     /// Sets the horizon, from the normalised step of q along a row, its leading zeros and its reciprocal in 31 bits.
-    #[inline(never)]
+    #[inline]
     pub(super) fn set_horizon(&mut self, rises: bool, zeros: u32, reciprocal: i32, inset: u32) {
         let quotient = (wide(self.plane.steps[0], reciprocal) >> 32) as i32;
         let quotient = if rises { quotient } else { -quotient };

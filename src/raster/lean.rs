@@ -153,7 +153,7 @@ impl TriangleSetup {
         let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
         let step = self.at(&plane, first, y).1.unsigned_abs();
         let [first, last] = self.extent(0);
-        let unit = u32::from(packing.unit);
+        let unit = packing.unit();
         // With a large texture (15 steps) triangles that are not small are drawn in blocks of 8 pixels.
         let longest = if packing.steps == 15 && !self.is_small { 7 } else { u32::from(packing.steps) };
         let steps = longest.min((last - first) as u32);

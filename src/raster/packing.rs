@@ -19,8 +19,8 @@ use crate::geometry::Inputs;
 /// by `Attribute::scale_log2`. If they are not packed the unit is 1, and no error adds up.
 #[derive(Clone, Copy)]
 pub(crate) struct Packing {
-    /// The larger one of the units of u and v, I16F16.
-    pub(super) unit: u16,
+    /// Log₂ of the larger one of the units of u and v, I16F16.
+    unit_log2: u8,
     /// How far v stays inside its range, I16F16, where it does not [lean](super::triangle::TriangleSetup::lean): as far as
     /// carries can take it in a run, if u does not repeat within four pixels. At least 1; 0 if u and v are not among the
     /// inputs.
@@ -38,15 +38,15 @@ impl Packing {
     #[inline(never)]
     pub(crate) fn new(log2: Option<[u32; 2]>, scale_log2: u32, inputs: Inputs) -> Self {
         if !matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            return Self { unit: 1, inset: 0, steps: 0, turn_log2: 31 };
+            return Self { unit_log2: 0, inset: 0, steps: 0, turn_log2: 31 };
         }
         let Some([a, b]) = log2 else {
-            return Self { unit: 1, inset: 1, steps: 0, turn_log2: 31 };
+            return Self { unit_log2: 0, inset: 1, steps: 0, turn_log2: 31 };
         };
         let steps = if a.max(b) > 6 { 15 } else { 63 };
-        let unit = 1 << (a.max(b).wrapping_sub(scale_log2) & 15);
+        let unit_log2 = (a.max(b).wrapping_sub(scale_log2) & 15) as u8;
         let turn_log2 = (16 + a).wrapping_sub(scale_log2) as u8;
-        Self { unit, inset: unit * (steps / 4 + 3), steps: steps as u8, turn_log2 }
+        Self { unit_log2, inset: (steps / 4 + 3) << unit_log2, steps: steps as u8, turn_log2 }
     }
 
     /// The same for coordinates with `log2` more fraction bits.
@@ -56,13 +56,19 @@ impl Packing {
             return Self { ..*self };
         }
         let turn_log2 = self.turn_log2 + log2 as u8;
-        Self { unit: self.unit << log2, inset: self.inset << log2, turn_log2, ..*self }
+        Self { unit_log2: self.unit_log2 + log2 as u8, inset: self.inset << log2, turn_log2, ..*self }
     }
 
-    /// Whether runs are short, because a side has more than 64 texels.
+    /// The larger one of the units of u and v, I16F16.
     #[inline]
-    pub(super) fn is_large(&self) -> bool {
-        self.steps == 15
+    pub(super) fn unit(&self) -> u32 {
+        1 << (self.unit_log2 & 31)
+    }
+
+    /// Log₂ of 32 units, of a packed texture of which no side has more than 64 texels; of any other 0.
+    #[inline]
+    pub(super) fn contraction_log2(&self) -> u32 {
+        if self.steps == 63 { u32::from(self.unit_log2) + 5 } else { 0 }
     }
 
     /// Whether u repeats within four pixels if it changes by this per pixel, I16F16.

@@ -55,10 +55,12 @@ use super::straight::{Bend, Straight};
 use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
 use crate::geometry::{Inputs, Oriented, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, normalised, shift_round, wide};
+use crate::num::{mul_round, normalise, shift_round_short, wide};
 
 /// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
 struct Slopes {
+    /// Whether planes hold the values at the corners: see [`TriangleSetup::sliver`].
+    sliver: bool,
     /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
     of_weights: [[i32; 2]; 2],
     fraction_bits: i32,
@@ -68,6 +70,93 @@ struct Slopes {
     to_center: [i32; 2],
     /// From that pixel to the middle of what is within the screen.
     to_middle: [i32; 2],
+    /// Columns and rows of what is within the screen, added up.
+    size: u32,
+}
+
+impl Slopes {
+    /// Finds out whether it is a sliver, too. `area` is twice the area in 1/256 px².
+    ///
+    /// Not inlined: what it takes is not on the stack while planes are set.
+    #[inline(never)]
+    fn new(setup: &TriangleSetup, area: u32) -> Self {
+        let (edges, a) = (edges(&setup.corners), setup.corners[0]);
+        let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
+        let (height, width) = (spread(edges[0]), spread(edges[1]));
+        // The largest difference to 30 bits, times 1/area.
+        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
+        let shift = normalise(largest).1 - 2;
+        let Reciprocal { mantissa, zeros } = setup.area;
+        // (e·2^shift · mantissa) / 2³¹, by halves of the mantissa: e is below 2¹⁵, and so `shift` at least 15.
+        let weight =
+            |e: i32| ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift));
+        let pixel = a.map(|at| at >> 4);
+        let extents = [0, 1].map(|axis| setup.extent(axis));
+        Self {
+            // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of
+            // 2^−`fraction_bits` a pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
+            sliver: height.max(width) * 16 > area || 2 * shift < 23 + zeros,
+            of_weights: edges.map(|edge| edge.map(weight)),
+            // A weight · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
+            fraction_bits: shift as i32 - 5 - zeros as i32,
+            pixel,
+            to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
+            to_middle: [0, 1].map(|axis| ((extents[axis][0] + extents[axis][1]) >> 1) - pixel[axis]),
+            size: extents.iter().map(|[first, last]| last - first).sum::<i32>() as u32,
+        }
+    }
+
+    /// Completes a plane whose `origin` holds the value at corner 0, from the rise to corners 1 and 2.
+    #[inline(never)]
+    fn set_plane(&self, plane: &mut Plane, rise: [i32; 2]) {
+        if self.sliver {
+            plane.steps = rise;
+            return;
+        }
+        for axis in 0..2 {
+            let [b, c] = self.of_weights[axis];
+            let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
+            let bits = self.fraction_bits;
+            let (step, rest) = if bits > 0 {
+                let step = ((slope >> (bits - 1)) + 1) >> 1;
+                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
+                let rest = slope.wrapping_sub(step << bits);
+                (
+                    step,
+                    if bits > 12 {
+                        ((rest >> (bits - 12)) * self.to_middle[axis]) >> 12
+                    } else {
+                        (rest * self.to_middle[axis]) >> bits
+                    },
+                )
+            } else {
+                (slope << -bits, 0)
+            };
+            plane.steps[axis] = step;
+            plane.origin = plane
+                .origin
+                .wrapping_add_signed((step >> 4) * self.to_center[axis])
+                .wrapping_sub((self.pixel[axis].wrapping_mul(step)) as u32)
+                .wrapping_add_signed(rest);
+        }
+    }
+
+    /// Sets a plane from the values at the corners.
+    #[inline]
+    fn set_plane_of(&self, plane: &mut Plane, at: [u32; 3]) {
+        plane.origin = at[0];
+        self.set_plane(plane, [1, 2].map(|i| at[i].wrapping_sub(at[0]) as i32));
+    }
+}
+
+/// What all attributes of a bent triangle have in common: for set-up only.
+struct Bent<'a> {
+    slopes: &'a Slopes,
+    /// At the corners.
+    q: [u32; 3],
+    /// 1/(the step of q along a row), from that normalised.
+    reciprocal: i32,
+    needs: &'a Needs,
 }
 
 impl TriangleSetup {
@@ -116,22 +205,22 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_any_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         self.is_small = false;
-        let vertices = triangle.vertices;
         self.area = Reciprocal::precise(triangle.area);
-        let slopes = self.slopes(triangle.area);
-        let near_w = vertices.map(|vertex| vertex.q.to_bits());
+        let mut slopes = Slopes::new(self, triangle.area);
+        let near_w = triangle.vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
-        let q = q.map(|near_w| near_w << (q[0].leading_zeros() - 1));
+        let up = normalise(q[0]).1 - 1;
+        let q = q.map(|near_w| near_w << up);
         self.q_min = q[1].min(q[2]);
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
         let is_perspective = matches!(needs.straight, Straight::Below(_));
-        self.sliver |= needs.every_pixel && self.q_min < 1 << 19 && is_perspective;
+        slopes.sliver |= needs.every_pixel && self.q_min < 1 << 19 && is_perspective;
+        self.sliver = slopes.sliver;
         if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
             // for that.
-            let z = near_w.map(|q| q.clamp(2048, (1 << 31) - 2048));
-            self.z = self.plane(&slopes, z[0], [1, 2].map(|i| z[i].wrapping_sub(z[0]) as i32));
+            slopes.set_plane_of(&mut self.z, near_w.map(|q| q.clamp(2048, (1 << 31) - 2048)));
         }
         if needs.inputs == Inputs::None {
             self.straight = true;
@@ -139,175 +228,111 @@ impl TriangleSetup {
         }
         let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Below(limit) if !is_exact => {
-                Bend::new(&edges(&self.corners), q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
-            }
+            Straight::Below(limit) if !is_exact => self.is_straight(&q, limit),
             _ => true,
         };
-        if !self.straight {
-            self.q = self.plane(&slopes, q[0], [1, 2].map(|i| q[i].wrapping_sub(q[0]) as i32));
+        if self.straight {
+            needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+                let attribute = &mut self.attributes[i];
+                let rise = attribute.set_range(at, scale_log2);
+                attribute.plane.origin = attribute.origin();
+                slopes.set_plane(&mut attribute.plane, rise);
+                true
+            });
+            if needs.packings[0].inset > 0 {
+                self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
+            }
+            return;
         }
-        let mixed = self.sliver && needs.every_pixel;
-        self.is_extreme =
-            !self.straight && (self.sliver || needs.every_pixel || self.planes_leave_range(q[0]));
+        slopes.set_plane_of(&mut self.q, q);
+        self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
+        let reciprocal = self.set_q_step(needs.every_pixel);
+        let bent = Bent { slopes: &slopes, q, reciprocal, needs };
         needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
-            let at = if self.straight { at } else { self.contract(at, i, needs) };
-            self.attributes[i] = self.attribute(&slopes, at, scale_log2, &q, mixed);
+            self.set_bent_attribute(i, &at, scale_log2, &bent);
             true
         });
-        if needs.packings[0].inset > 0 && self.straight {
-            self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
-        }
-        if !self.straight {
-            self.set_horizons(needs);
-        }
     }
 
-    /// What a row needs for perspective, besides the planes: the step of q along it, normalised, and each attribute's
-    /// value at the horizon.
-    fn set_horizons(&mut self, needs: &Needs) {
+    /// Whether linear interpolation will do for all attributes, from q at the corners.
+    #[inline(never)]
+    fn is_straight(&self, q: &[u32; 3], limit: u32) -> bool {
+        Bend::new(&edges(&self.corners), *q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
+    }
+
+    /// What a row needs for perspective, besides planes and horizons: the step of q along it, normalised. Returns its reciprocal.
+    #[inline]
+    fn set_q_step(&mut self, every_pixel: bool) -> i32 {
         let step = self.q.steps[0];
         let size = step.unsigned_abs();
         // Below 2¹² q changes by 2⁻⁸ of itself over 1023 pixels, if it is 2³⁰.
-        self.is_level = !self.sliver && size < if needs.every_pixel { 1 } else { 1 << 12 };
-        (self.q_step, self.q_step_zeros) = normalised(size.max(1));
+        self.is_level = !self.sliver && size < if every_pixel { 1 } else { 1 << 12 };
+        (self.q_step, self.q_step_zeros) = normalise(size.max(1));
         self.q_rises = step > 0;
-        let reciprocal = Reciprocal::precise_normalised(self.q_step, self.q_step_zeros).mantissa;
-        let inset = u32::from(needs.packings[1].inset);
-        for (i, attribute) in self.attributes.iter_mut().take(needs.count(self.gray)).enumerate() {
-            // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
-            let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
-            attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
-        }
+        Reciprocal::precise_normalised(self.q_step, self.q_step_zeros).mantissa
     }
 
     /// Whether the plane of U may be off by more than 2⁻¹⁷ of its attribute's range: by (n + m)/2 + 16 units of 2⁻²⁹
-    /// after n columns and m rows from the middle of the triangle, times the greatest q by the least.
-    fn planes_leave_range(&self, greatest: u32) -> bool {
-        let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| (last - first) as u32);
-        let units = (width + height) / 4 + 16;
+    /// after n columns and m rows from the middle of the triangle, times the greatest q by the least. `size` is 2·(n + m).
+    #[inline]
+    fn planes_leave_range(&self, greatest: u32, size: u32) -> bool {
+        let units = size / 4 + 16;
         (units * (greatest >> 16)) >> 12 >= self.q_min >> 16
     }
 
-    /// An attribute's values at the corners, I16F16, each moved a little towards the middle of the three: so that
-    /// what rounding adds on the way to a pixel does not take it out of their range.
-    ///
-    /// That is 2⁻¹⁶ of the range, and 64 units at least, which are 2⁻¹⁰ of a texel or of 1/255; in extreme triangles
-    /// 4 units, as there slopes come from both ends. Of texture coordinates that are packed it is 16 units of these
-    /// at least: over a chord of 8 pixels v loses up to 8 by rounding, and 4 by carries. At the far end of a row the
-    /// plane of U may be off by 2⁻¹⁷ of the range; where it may be more, the triangle [is
-    /// extreme](TriangleSetup::planes_leave_range). The division at the near end is off by 2⁻²⁰, which 1/w makes 2⁻¹⁷
-    /// at most.
-    fn contract(&self, at: [i32; 3], i: usize, needs: &Needs) -> [i32; 3] {
-        let is_packed = needs.packings[0].inset > 1 && i < 2;
-        let log2 = if is_packed && !needs.packings[0].is_large() {
-            31 - normalised(needs.packings[i].unit.into()).1 + 5
-        } else {
-            0
+    /// Sets an attribute of a bent triangle from its I16F16 values at the corners (within ±2²⁹).
+    #[inline(never)]
+    fn set_bent_attribute(&mut self, i: usize, at: &[i32; 3], scale_log2: u32, bent: &Bent<'_>) {
+        let Some(attribute) = self.attributes.get_mut(i) else {
+            return;
         };
-        let log2 = log2.max(if self.is_extreme { 3 } else { 7 });
-        let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
-        let (low, high) = (rise[0].min(rise[1]).min(0), rise[0].max(rise[1]).max(0));
-        let range = high.wrapping_sub(low) as u32;
-        let middle = at[0].wrapping_add(low).wrapping_add_unsigned(range >> 1);
-        if range >> log2 > 1 {
-            let shift = 31 - normalised(range).1 - log2;
-            let shift = if self.is_extreme { shift } else { shift.min(15) };
-            return at.map(|at| at.wrapping_add(middle.wrapping_sub(at) >> shift));
-        }
-        // No room: one value all over. v gets the centre of its texel, out of which no carry moves it.
-        let texel = 0x10000 >> needs.scale_log2[i & 1];
-        [if is_packed && i == 1 { (middle & -texel) + texel / 2 } else { middle }; 3]
-    }
-
-    /// Finds out whether it is a sliver, too.
-    ///
-    /// Not inlined: what it takes is not on the stack while planes are set.
-    #[inline(never)]
-    fn slopes(&mut self, area: u32) -> Slopes {
-        let (edges, a) = (edges(&self.corners), self.corners[0]);
-        let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
-        let (height, width) = (spread(edges[0]), spread(edges[1]));
-        // The largest difference to 30 bits, times 1/area.
-        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
-        let shift = largest.leading_zeros() - 2;
-        // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of 2^−`fraction_bits` a
-        // pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
-        self.sliver = height.max(width) * 16 > area || 2 * shift < 23 + self.area.zeros;
-        let pixel = a.map(|at| at >> 4);
-        Slopes {
-            of_weights: edges.map(|edge| edge.map(|e| (wide(e << shift, self.area.mantissa) >> 31) as i32)),
-            // (e·2^shift · mantissa / 2³¹) · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
-            fraction_bits: shift as i32 - 5 - self.area.zeros as i32,
-            pixel,
-            to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
-            to_middle: [0, 1].map(|axis| {
-                let [first, last] = self.extent(axis);
-                ((first + last) >> 1) - pixel[axis]
-            }),
-        }
-    }
-
-    /// From the value at corner 0 and the rise from there to corners 1 and 2.
-    #[inline(never)]
-    fn plane(&self, slopes: &Slopes, origin: u32, rise: [i32; 2]) -> Plane {
-        if self.sliver {
-            return Plane { origin, steps: rise };
-        }
-        let mut plane = Plane { origin, steps: [0; 2] };
-        for axis in 0..2 {
-            let [b, c] = slopes.of_weights[axis];
-            let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
-            let bits = slopes.fraction_bits;
-            let (step, rest) = if bits > 0 {
-                let step = ((slope >> (bits - 1)) + 1) >> 1;
-                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
-                let rest = slope.wrapping_sub(step << bits);
-                (
-                    step,
-                    if bits > 12 {
-                        ((rest >> (bits - 12)) * slopes.to_middle[axis]) >> 12
-                    } else {
-                        (rest * slopes.to_middle[axis]) >> bits
-                    },
-                )
-            } else {
-                (slope << -bits, 0)
-            };
-            plane.steps[axis] = step;
-            plane.origin = plane
-                .origin
-                .wrapping_add_signed((step >> 4) * slopes.to_center[axis])
-                .wrapping_sub((slopes.pixel[axis].wrapping_mul(step)) as u32)
-                .wrapping_add_signed(rest);
-        }
-        plane
-    }
-
-    /// An attribute from its I16F16 values at the corners (within ±2²⁹), and q there; `mixed` for
-    /// [`resolve_in_sliver`](Self::resolve_in_sliver).
-    #[inline(never)]
-    fn attribute(
-        &self,
-        slopes: &Slopes,
-        at: [i32; 3],
-        scale_log2: u32,
-        q: &[u32; 3],
-        mixed: bool,
-    ) -> Attribute {
-        let (mut attribute, rise) = Attribute::between(at, scale_log2);
-        if self.straight || mixed {
-            let origin = if mixed && !self.straight { 0 } else { attribute.origin() };
-            attribute.plane = self.plane(slopes, origin, rise);
-            return attribute;
+        let Bent { slopes, q, reciprocal, needs } = bent;
+        let rise = attribute.set_range(*at, scale_log2);
+        let rise = contract(attribute, rise, i, needs, self.is_extreme);
+        attribute.plane.origin = 0;
+        if self.sliver && needs.every_pixel {
+            // For `resolve_in_sliver`.
+            return slopes.set_plane(&mut attribute.plane, rise);
         }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger, and not quite 2³⁰.
-        let exponent = 34u32.saturating_sub((largest + (largest >> 15)).leading_zeros()).max(1);
-        let scaled = products.map(|product| shift_round(product, exponent) as i32);
-        attribute.plane = self.plane(slopes, 0, scaled);
-        attribute.shift = 32 - exponent as i32;
-        attribute
+        let (_, zeros) = normalise(((largest + (largest >> 15)) >> 30) as u32 | 1);
+        attribute.shift = zeros as i32;
+        slopes
+            .set_plane(&mut attribute.plane, products.map(|product| shift_round_short(product, 32 - zeros)));
+        // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
+        let inset = u32::from(needs.packings[1].inset);
+        let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
+        attribute.set_horizon(self.q_rises, self.q_step_zeros, *reciprocal, inset);
     }
+}
+
+/// Moves an attribute's values at the corners a little towards the middle of their range: so that what rounding adds on the
+/// way to a pixel does not take it out of that. Takes and returns how much it rises from corner 0 to 1 and 2.
+///
+/// That is 2⁻¹⁶ of the range, and 64 units at least, which are 2⁻¹⁰ of a texel or of 1/255; in extreme triangles
+/// 4 units, as there slopes come from both ends. Of texture coordinates that are packed it is 16 units of these
+/// at least: over a chord of 8 pixels v loses up to 8 by rounding, and 4 by carries. At the far end of a row the
+/// plane of U may be off by 2⁻¹⁷ of the range; where it may be more, the triangle [is
+/// extreme](TriangleSetup::planes_leave_range). The division at the near end is off by 2⁻²⁰, which 1/w makes 2⁻¹⁷
+/// at most.
+#[inline]
+fn contract(
+    attribute: &mut Attribute,
+    rise: [i32; 2],
+    i: usize,
+    needs: &Needs,
+    is_extreme: bool,
+) -> [i32; 2] {
+    let packing = &needs.packings[i & 1];
+    let (least, most_shift) = if is_extreme { (3, 31) } else { (7, 15) };
+    let log2 = if i < 2 { packing.contraction_log2().max(least) } else { least };
+    if attribute.range >> log2 > 1 {
+        let shift = 31 - normalise(attribute.range).1 - log2;
+        return attribute.draw_in(rise, shift.min(most_shift));
+    }
+    // No room: one value all over. v gets the centre of its texel, out of which no carry moves it.
+    attribute.keep_amid(if i == 1 { packing.inset.into() } else { 0 });
+    [0; 2]
 }

@@ -81,13 +81,6 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
-    /// How many attributes are in use.
-    pub(super) fn count(&self, gray: bool) -> usize {
-        let uv = if matches!(self.inputs, Inputs::Uv | Inputs::UvColor) { 2 } else { 0 };
-        let color = if gray { 1 } else { 3 };
-        uv + if matches!(self.inputs, Inputs::Color | Inputs::UvColor) { color } else { 0 }
-    }
-
     /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
     /// v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
     #[inline]
@@ -144,7 +137,7 @@ impl TriangleSetup {
     }
 
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.
-    #[inline(never)]
+    #[inline]
     pub(super) fn extent(&self, axis: usize) -> [i32; 2] {
         let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
         let (first, last) = (a.min(b).min(c), a.max(b).max(c));

@@ -42,7 +42,7 @@ use super::fill::{Fill, each_chord};
 use super::inverses::ONE_LOG2;
 use super::units::{Form, Units};
 use crate::math::recip::looked_up;
-use crate::num::{IS_ARMV6M, mul_17, mul_high, normalised};
+use crate::num::{IS_ARMV6M, mul_17, mul_high, normalise};
 use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup};
 
 /// The step of w, 32 fraction bits, where the horizon is 176 pixels away.
@@ -322,11 +322,4 @@ fn set_table(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
 #[inline(never)]
 fn set_table_further(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
     set_table(attribute, near, up, line);
-}
-
-/// Out of line on Armv6-M, where it takes half as long as the compiler's routine: see [`normalised`].
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn normalise(q: u32) -> (u32, u32) {
-    normalised(q)
 }
