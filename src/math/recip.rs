@@ -13,7 +13,7 @@
 //!
 //! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::{normalise, normalised, wide};
+use crate::num::{mul_high, normalise, normalised, wide};
 
 const INTERVALS: usize = 512;
 
@@ -87,7 +87,8 @@ impl Reciprocal {
     /// reciprocal of `divisor` (1 … 2²⁴).
     #[inline]
     pub(crate) fn div_rem(self, numerator: i32, divisor: i32) -> (i32, i32) {
-        corrected((wide(numerator, self.mantissa) >> (62 - self.zeros)) as i32, numerator, divisor)
+        let half = mul_high(numerator, self.mantissa as u32);
+        corrected((half << 1) >> (31 - self.zeros), numerator, divisor)
     }
 }
 
