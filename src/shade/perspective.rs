@@ -64,7 +64,7 @@ pub(crate) struct Perspective<'a> {
     /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on: in the way that all rows of the triangle
     /// have in common. A part of one pixel is never too long.
     way: fn(&mut Self, x: i32, y: i32, steps: u32) -> Way,
-    /// By how much `near_horizon` shifts each attribute left: [`Units::up`], computed once.
+    /// By how much `near_horizon` shifts each attribute left: [`Units::up`], computed once. Of other ways 0.
     ups: [u8; ATTRIBUTES],
     /// The leading zeros of q at the last division, which those at the next are close to.
     zeros: u32,
@@ -74,26 +74,24 @@ pub(crate) struct Perspective<'a> {
 impl<'a> Perspective<'a> {
     #[inline(never)]
     pub(crate) fn new(setup: &'a TriangleSetup, units: Units) -> Self {
-        let fits_table = |(i, attribute): (usize, &Attribute)| {
-            attribute.horizon().1 == 0 && units.up(i, attribute) <= ONE_LOG2
-        };
-        let way = if setup.straight {
-            Self::straight
+        let mut line =
+            Self { setup, units, way: Self::bent, ups: [0; ATTRIBUTES], zeros: 1, curve: Curve::default() };
+        if setup.straight {
+            line.way = Self::straight;
         } else if setup.is_level {
-            Self::level
-        } else if units.form == Form::Modular
-            && !setup.is_extreme
-            && setup.attributes.iter().enumerate().take(units.count).all(fits_table)
-        {
-            Self::near_horizon
-        } else {
-            Self::bent
-        };
-        let mut ups = [0; ATTRIBUTES];
-        for (i, (up, attribute)) in ups.iter_mut().zip(&setup.attributes).enumerate() {
-            *up = units.up(i, attribute) as u8;
+            line.way = Self::level;
+        } else if units.form == Form::Modular && !setup.is_extreme {
+            let mut fit_table = true;
+            let all = setup.attributes.iter().zip(&mut line.ups).enumerate();
+            for (i, (attribute, up)) in all.take(units.count) {
+                *up = units.up(i, attribute) as u8;
+                fit_table &= attribute.horizon().1 == 0 && u32::from(*up) <= ONE_LOG2;
+            }
+            if fit_table {
+                line.way = Self::near_horizon;
+            }
         }
-        Self { setup, units, way, ups, zeros: 1, curve: Curve::default() }
+        line
     }
 
     /// q's mantissa at a pixel, 2³¹ … 2³² − 1, and its leading zeros. Not of a sliver.
@@ -214,7 +212,7 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn near_horizon(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
-        let x = if setup.q_rises { x + steps as i32 } else { x };
+        let (left, x) = (x, if setup.q_rises { x + steps as i32 } else { x });
         let (m, zeros) = self.q_at(x, y);
         let near = Place { x, y, reciprocal: looked_up(m), zeros };
         let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
@@ -223,12 +221,13 @@ impl<'a> Perspective<'a> {
         let w_step = if down < 32 { size >> down } else { 0 };
         // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
         if w_step < NEAR_STEP || (w_step >> 10) * steps > 7 << 19 {
-            return self.bent(if setup.q_rises { x - steps as i32 } else { x }, y, steps);
+            return self.bent(left, y, steps);
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
         // Two without a loop, which would take as long as what is in it.
-        let (count, ups, lines) = (self.units.count, &self.ups, &mut self.curve.lines);
+        let (ups, lines) = (&self.ups, &mut self.curve.lines);
         set_table(&setup.attributes[0], &near, ups[0].into(), &mut lines[0]);
+        let count = self.units.count;
         if count > 1 {
             set_table(&setup.attributes[1], &near, ups[1].into(), &mut lines[1]);
         }
