@@ -183,9 +183,8 @@ impl TriangleSetup {
         if simple
             && !needs.every_pixel
             && let Some(slopes_of_q) = bend.slopes(self.z.steps)
-            && self.set_linear(triangle, needs, slopes)
         {
-            self.set_bent(triangle, needs, slopes, &bend, slopes_of_q);
+            self.straight = self.set_bent(triangle, needs, slopes, &bend, slopes_of_q);
         }
         self.straight
     }
@@ -211,7 +210,8 @@ impl TriangleSetup {
         })
     }
 
-    /// Bends attributes whose planes are linear by now. The last parameter is ∇q/q_mid per column and row, 16 fraction bits.
+    /// Sets attributes as bent. False if the values of one differ by 2²⁷ or more. The last parameter is ∇q/q_mid per column and
+    /// row, 16 fraction bits.
     #[inline(never)]
     fn set_bent(
         &mut self,
@@ -220,8 +220,7 @@ impl TriangleSetup {
         slopes: &Slopes,
         bend: &Bend,
         [q_right, q_down]: [i32; 2],
-    ) {
-        self.straight = true;
+    ) -> bool {
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
         self.longest = STRAIGHT / 2;
@@ -229,11 +228,16 @@ impl TriangleSetup {
             self.longest >>= 1;
         }
         let [x, y] = slopes.to_center;
-        needs.each_attribute(triangle, self.gray, |i, at, _| {
+        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
             let Some(attribute) = self.attributes.get_mut(i) else {
                 return false;
             };
-            let rise = [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])];
+            let rise = attribute.set_range(at, scale_log2);
+            if attribute.range >= 1 << 27 {
+                return false;
+            }
+            // ∇u: of this plane only the steps count.
+            slopes.set_plane(&mut attribute.plane, rise[0], rise[1]);
             let [right, down] = attribute.plane.steps;
             // The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at least
             // 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
@@ -260,6 +264,6 @@ impl TriangleSetup {
             }
             attribute.bend = [xx, xy, yy];
             true
-        });
+        })
     }
 }
