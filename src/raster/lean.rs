@@ -149,9 +149,7 @@ impl TriangleSetup {
             behind = behind.min(1 + (if direction > 0 { -errors[0] } else { errors[1] } >> 4));
         }
         let packing = &needs.packings[i];
-        // The step is the same everywhere; a sliver computes it for a pixel.
-        let [[first, y], ..] = self.corners.map(|corner| corner.map(|at| at >> 4));
-        let step = self.at(&plane, first, y).1.unsigned_abs();
+        let step = self.step(&plane).unsigned_abs();
         let [first, last] = self.extent(0);
         let unit = packing.unit();
         // With a large texture (15 steps) triangles that are not small are drawn in blocks of 8 pixels.

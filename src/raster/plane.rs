@@ -4,6 +4,8 @@
 //! - Out: for texture coordinates, steps moved to round numbers, and by how much the plane misses the values at the corners.
 //! - Assumes: inside the triangle values fit 32 bits. Far outside they may wrap, and wrap back on the way in.
 
+use crate::num::mul_round;
+
 /// A linear function on the screen, in integers that wrap. A sliver (see [`setup`](super::setup)) keeps values at its corners
 /// in the same fields.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,6 +23,13 @@ impl Plane {
     pub(crate) fn at(&self, x: i32, y: i32) -> u32 {
         let [right, down] = self.steps;
         self.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down)))
+    }
+
+    /// The value at a pixel of a sliver, from the weights of corners 1 and 2, 31 fraction bits.
+    #[inline]
+    pub(crate) fn weighted(&self, weights: &[u32; 2]) -> u32 {
+        let [b, c] = [0, 1].map(|i| mul_round::<31>(weights[i] as i32, self.steps[i]));
+        self.origin.wrapping_add_signed(b).wrapping_add_signed(c)
     }
 
     /// For a texture coordinate, in I16F16: moves each step to the nearest multiple of 2⁻¹² if that is at most `error` units

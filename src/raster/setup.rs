@@ -263,7 +263,7 @@ impl TriangleSetup {
     /// What a row needs for perspective, besides planes and horizons: the step of q along it, normalised. Returns its reciprocal.
     #[inline]
     fn set_q_step(&mut self, every_pixel: bool) -> i32 {
-        let step = self.q.steps[0];
+        let step = self.step(&self.q);
         let size = step.unsigned_abs();
         // Below 2¹² q changes by 2⁻⁸ of itself over 1023 pixels, if it is 2³⁰.
         self.is_level = !self.sliver && size < if every_pixel { 1 } else { 1 << 12 };

@@ -6,7 +6,7 @@ use super::plane::Plane;
 use super::straight::Straight;
 use crate::geometry::{Inputs, Oriented, ScreenVertex};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, shift_round, wide};
+use crate::num::{mul_round, normalise, shift_round, wide};
 
 /// The longest row of a straight triangle, in steps.
 pub(crate) const STRAIGHT: i32 = 31;
@@ -153,6 +153,12 @@ impl TriangleSetup {
         (plane.at(x, y), plane.steps[0])
     }
 
+    /// A plane's step to the right.
+    #[inline]
+    pub(super) fn step(&self, plane: &Plane) -> i32 {
+        if self.sliver { self.step_in_sliver(plane) } else { plane.steps[0] }
+    }
+
     /// q with what rounding errors took below the least or above the greatest value at a corner taken away.
     #[inline]
     pub(crate) fn bounded(&self, q: u32) -> u32 {
@@ -165,38 +171,47 @@ impl TriangleSetup {
         if q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { q.min(i32::MAX as u32) }
     }
 
-    /// A plane's value in a sliver, by weights: exact edge functions times 1/area.
+    /// By how much corners 1 and 2 count at a pixel of a sliver, 31 fraction bits: exact edge functions times 1/area.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn weights(&self, x: i32, y: i32) -> [u32; 2] {
+        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
+        let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
+        [(ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px].map(|edge_function| {
+            // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
+            let weight = wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
+            (weight as u32).min(i32::MAX as u32)
+        })
+    }
+
+    /// A plane's value in a sliver.
     #[cold]
     #[inline(never)]
     pub(crate) fn value_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> u32 {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
-        let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
-        let weighted = |edge_function: i32, rise: i32| {
-            // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
-            let weight = wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
-            mul_round::<31>(weight.min(i64::from(i32::MAX)) as i32, rise)
-        };
-        let [b, c] = plane.steps;
-        plane
-            .origin
-            .wrapping_add_signed(weighted((ax - cx) * py - (ay - cy) * px, b))
-            .wrapping_add_signed(weighted((bx - ax) * py - (by - ay) * px, c))
+        plane.weighted(&self.weights(x, y))
     }
 
     /// Likewise, and its step to the right.
     #[cold]
     #[inline(never)]
     pub(crate) fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+        (self.value_in_sliver(plane, x, y), self.step_in_sliver(plane))
+    }
+
+    /// A plane's step to the right in a sliver, the same in all of it.
+    #[cold]
+    #[inline(never)]
+    fn step_in_sliver(&self, plane: &Plane) -> i32 {
         let [[_, ay], [_, by], [_, cy]] = self.corners;
         let [b, c] = plane.steps;
         // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
         // two pixels, since the value stays within 32 bits.
         let sum = wide(cy - ay, b) - wide(by - ay, c);
         let magnitude = sum.unsigned_abs();
-        let excess = 33u32.saturating_sub(magnitude.leading_zeros());
+        let excess = 31 - normalise((magnitude >> 30) as u32 | 1).1;
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
         let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
-        (self.value_in_sliver(plane, x, y), if sum < 0 { -step } else { step })
+        if sum < 0 { -step } else { step }
     }
 
     /// An attribute of a sliver at a pixel's centre, I16F16 without its scale, with weights edge function · q / sum of both

@@ -17,13 +17,6 @@ use crate::raster::{Attribute, Place};
 
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
 const MOST_GENERAL: u32 = 63;
-/// How q changes along a row: the size of its step with the first bit set, how far that was shifted, and whether it rises.
-#[derive(Clone, Copy)]
-struct Slope {
-    step: u32,
-    zeros: u32,
-    rises: bool,
-}
 
 impl Perspective<'_> {
     /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on.
@@ -33,21 +26,19 @@ impl Perspective<'_> {
         if setup.sliver {
             return self.bent_in_sliver(x, y, steps);
         }
-        let slope = Slope { step: setup.q_step, zeros: setup.q_step_zeros, rises: setup.q_rises };
-        let x = if slope.rises { x + steps as i32 } else { x };
+        let rises = setup.q_rises;
+        let x = if rises { x + steps as i32 } else { x };
         let (m, zeros) = self.q_at(x, y);
         let near = Place { x, y, reciprocal: looked_up(m), zeros };
-        let Some((way, w_step)) = self.start(slope, &near, steps) else {
+        let Some((way, w_step)) = self.start(&near, steps) else {
             return Way::None;
         };
         // A straight line is held in the range by itself.
         if setup.is_extreme && !matches!(way, Way::Straight) {
-            let x = if slope.rises { x - steps as i32 } else { x + steps as i32 };
+            let x = if rises { x - steps as i32 } else { x + steps as i32 };
             let (m, zeros) = self.q_at(x, y);
             let far = Place { x, y, reciprocal: looked_up(m), zeros };
-            self.set_by_both_ends(steps, slope.rises, &way, &|attribute| {
-                [attribute.at(&near), attribute.at(&far)]
-            });
+            self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(&near), attribute.at(&far)]);
         } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
             for (i, attribute) in setup.attributes.iter().enumerate().take(self.units.count) {
                 let (above, up) = (attribute.at(&near), self.units.up(i, attribute));
@@ -58,14 +49,14 @@ impl Perspective<'_> {
                 self.curve.lines[i] = Linear { at, slope };
             }
         } else if steps > 0 {
-            self.set_by_slope(&near, slope.rises, steps, w_step, &way);
+            self.set_by_slope(&near, rises, steps, w_step, &way);
         } else {
             self.set_pixel(&|attribute| attribute.at(&near));
         }
         way
     }
 
-    /// The planes of a sliver have a step in each row.
+    /// A sliver has no planes: its values at both ends come from weights.
     #[cold]
     #[inline(never)]
     fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
@@ -77,52 +68,46 @@ impl Perspective<'_> {
             self.set_pixel(&|attribute| setup.resolve_in_sliver(attribute, x, y));
             return Way::Straight;
         }
-        if steps == 0 {
-            let (m, zeros) = self.mantissa_of(setup.value_in_sliver(&setup.q, x, y));
-            self.set_pixel(&|attribute| {
-                attribute.divided(setup.value_in_sliver(&attribute.plane, x, y) as i32, looked_up(m), zeros)
-            });
-            return Way::Straight;
-        }
-        let (q, q_step) = setup.at_in_sliver(&setup.q, x, y);
-        let (step, zeros) = normalised(q_step.unsigned_abs().max(1));
-        let slope = Slope { step, zeros, rises: q_step > 0 };
-        let end = |(value, step): (u32, i32)| value.wrapping_add_signed(step.wrapping_mul(steps as i32));
-        let ends = |left: u32, right: u32| if slope.rises { [right, left] } else { [left, right] };
-        let [near, far] = ends(q, end((q, q_step))).map(|q| {
-            let (m, zeros) = self.mantissa_of(q);
-            Place { x, y, reciprocal: looked_up(m), zeros }
-        });
-        let Some((way, _)) = self.start(slope, &near, steps) else {
+        let rises = setup.q_rises;
+        let [to_near, to_far] = if rises { [steps, 0] } else { [0, steps] };
+        let near = self.place_in_sliver(x + to_near as i32, y);
+        let Some((way, _)) = self.start(&near.0, steps) else {
             return Way::None;
         };
-        let both = |attribute: &Attribute| {
-            let left = setup.at_in_sliver(&attribute.plane, x, y);
-            let [at_near, at_far] = ends(left.0, end(left)).map(|value| value as i32);
-            [
-                attribute.divided(at_near, near.reciprocal, near.zeros),
-                attribute.divided(at_far, far.reciprocal, far.zeros),
-            ]
-        };
-        self.set_by_both_ends(steps, slope.rises, &way, &both);
+        if steps == 0 {
+            self.set_pixel(&|attribute| in_sliver(attribute, &near));
+        } else {
+            let far = self.place_in_sliver(x + to_far as i32, y);
+            self.set_by_both_ends(steps, rises, &way, &|attribute| {
+                [in_sliver(attribute, &near), in_sliver(attribute, &far)]
+            });
+        }
         way
+    }
+
+    /// A pixel of a sliver and 1/q there, and by how much corners 1 and 2 count.
+    fn place_in_sliver(&mut self, x: i32, y: i32) -> (Place, [u32; 2]) {
+        let weights = self.setup.weights(x, y);
+        let (m, zeros) = self.mantissa_of(self.setup.q.weighted(&weights));
+        (Place { x, y, reciprocal: looked_up(m), zeros }, weights)
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
     /// size / 2^(32 + down).
     #[inline(always)]
-    fn start(&mut self, slope: Slope, near: &Place, steps: u32) -> Option<(Way, (u32, i32))> {
+    fn start(&mut self, near: &Place, steps: u32) -> Option<(Way, (u32, i32))> {
         if steps == 0 {
             return Some((Way::Straight, (0, 0)));
         }
-        let size = mul_high((slope.step >> 1) as i32, near.reciprocal) as u32;
-        let down = slope.zeros.wrapping_sub(near.zeros).wrapping_sub(3) as i32;
+        let (setup, rises) = (self.setup, self.setup.q_rises);
+        let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
+        let down = setup.q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3) as i32;
         if down < -3 || down == -3 && size > 7 << 26 {
             return None;
         }
         let w_step = if down >= 0 { size >> down.min(31) } else { size << -down };
-        self.curve.set_w(slope.rises, w_step, steps);
-        (self.curve.n, self.curve.n_step) = if slope.rises { (steps, u32::MAX) } else { (0, 1) };
+        self.curve.set_w(rises, w_step, steps);
+        (self.curve.n, self.curve.n_step) = if rises { (steps, u32::MAX) } else { (0, 1) };
         match way_of(self.units.form, w_step, steps) {
             Way::None => None,
             way => Some((way, (size, down))),
@@ -246,6 +231,11 @@ impl Perspective<'_> {
             }
         }
     }
+}
+
+/// How much more than the least an attribute is at a pixel of a sliver.
+fn in_sliver(attribute: &Attribute, (place, weights): &(Place, [u32; 2])) -> i32 {
+    attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
 }
 
 /// How a part of so many steps is drawn, over each of which w changes by `w_step`, 32 fraction bits.

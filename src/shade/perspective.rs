@@ -137,7 +137,7 @@ impl<'a> Perspective<'a> {
         let mut count = pixels.len().div_ceil(2);
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
-            let near_is_right = self.q_rises(x, y);
+            let near_is_right = !self.setup.straight && self.setup.q_rises;
             let way = loop {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
                 match (self.way)(self, x + skipped as i32, y, count as u32 - 1) {
@@ -251,12 +251,6 @@ impl<'a> Perspective<'a> {
                 Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
         }
         Way::Straight
-    }
-
-    /// Whether the near end of a row is at the right.
-    fn q_rises(&self, x: i32, y: i32) -> bool {
-        let setup = self.setup;
-        !setup.straight && if setup.sliver { setup.at_in_sliver(&setup.q, x, y).1 > 0 } else { setup.q_rises }
     }
 }
 
