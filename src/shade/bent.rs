@@ -22,26 +22,28 @@ impl Perspective<'_> {
     /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on.
     #[inline(never)]
     pub(super) fn bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        let setup = self.setup;
-        if setup.sliver {
+        if self.setup.sliver {
             return self.bent_in_sliver(x, y, steps);
         }
-        let rises = setup.q_rises;
-        let x = if rises { x + steps as i32 } else { x };
-        let (m, zeros) = self.q_at(x, y);
-        let near = Place { x, y, reciprocal: looked_up(m), zeros };
-        let Some((way, w_step)) = self.start(&near, steps) else {
+        let near = self.near(x, y, steps);
+        self.bent_from(&near, steps)
+    }
+
+    /// Likewise, from its near end. Not of a sliver.
+    #[inline(never)]
+    pub(super) fn bent_from(&mut self, near: &Place, steps: u32) -> Way {
+        let (setup, rises) = (self.setup, self.setup.q_rises);
+        let Some((way, w_step)) = self.start(near, steps) else {
             return Way::None;
         };
         // A straight line is held in the range by itself.
         if setup.is_extreme && !matches!(way, Way::Straight) {
-            let x = if rises { x - steps as i32 } else { x + steps as i32 };
-            let (m, zeros) = self.q_at(x, y);
-            let far = Place { x, y, reciprocal: looked_up(m), zeros };
-            self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(&near), attribute.at(&far)]);
+            let x = if rises { near.x - steps as i32 } else { near.x + steps as i32 };
+            let far = self.place(x, near.y);
+            self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(near), attribute.at(&far)]);
         } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
             for (i, attribute) in setup.attributes.iter().enumerate().take(self.units.count) {
-                let (above, up) = (attribute.at(&near), self.units.up(i, attribute));
+                let (above, up) = (attribute.at(near), self.units.up(i, attribute));
                 let (from_horizon, log2) = from_horizon(attribute, above);
                 let u = attribute.least.wrapping_add(above);
                 let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
@@ -49,9 +51,9 @@ impl Perspective<'_> {
                 self.curve.lines[i] = Linear { at, slope };
             }
         } else if steps > 0 {
-            self.set_by_slope(&near, rises, steps, w_step, &way);
+            self.set_by_slope(near, rises, steps, w_step, &way);
         } else {
-            self.set_pixel(&|attribute| attribute.at(&near));
+            self.set_pixel(&|attribute| attribute.at(near));
         }
         way
     }

@@ -100,6 +100,19 @@ impl<'a> Perspective<'a> {
         self.mantissa_of(self.setup.q.at(x, y))
     }
 
+    /// A pixel and 1/q there. Not of a sliver.
+    #[inline(always)]
+    pub(super) fn place(&mut self, x: i32, y: i32) -> Place {
+        let (m, zeros) = self.q_at(x, y);
+        Place { x, y, reciprocal: looked_up(m), zeros }
+    }
+
+    /// The near end of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
+    #[inline(always)]
+    pub(super) fn near(&mut self, x: i32, y: i32, steps: u32) -> Place {
+        self.place(if self.setup.q_rises { x + steps as i32 } else { x }, y)
+    }
+
     #[inline(always)]
     pub(super) fn mantissa_of(&mut self, q: u32) -> (u32, u32) {
         let q = self.setup.bounded(q);
@@ -212,16 +225,14 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn near_horizon(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
-        let (left, x) = (x, if setup.q_rises { x + steps as i32 } else { x });
-        let (m, zeros) = self.q_at(x, y);
-        let near = Place { x, y, reciprocal: looked_up(m), zeros };
+        let near = self.near(x, y, steps);
         let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
-        let down = setup.q_step_zeros.wrapping_sub(zeros).wrapping_sub(3);
+        let down = setup.q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3);
         // What does not fit is for `bent`.
         let w_step = if down < 32 { size >> down } else { 0 };
         // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
         if w_step < NEAR_STEP || (w_step >> 10) * steps > 7 << 19 {
-            return self.bent(left, y, steps);
+            return self.bent_from(&near, steps);
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
         // Two without a loop, which would take as long as what is in it.
