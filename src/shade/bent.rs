@@ -148,7 +148,7 @@ impl Perspective<'_> {
     }
 
     /// A straight way, from how much more than the least there is at its near end, and the change over a pixel, I16F16.
-    #[inline(never)]
+    #[inline(always)]
     fn set_straight(
         &mut self,
         i: usize,
