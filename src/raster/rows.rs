@@ -83,7 +83,7 @@ impl Edge {
     /// may be wrong by up to 2⁻¹⁴ either way. The reciprocal's relative error of 2⁻²⁰ moves x by at most |dx|·2⁻²⁴ ≤ 2⁻¹⁵.
     /// The slope's rounding moves it by 2⁻²¹ in every row, by 2⁻¹⁶ in 32 rows. What is left, 2⁻¹⁶, is more than the last bits
     /// of the line with `below`.
-    #[inline(never)]
+    #[inline(always)]
     fn short(&mut self, dx: i32, dy: i32, below: i32) {
         let slope = quotient_of_10_bits(dx, dy);
         self.x += ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);

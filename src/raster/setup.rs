@@ -255,7 +255,7 @@ impl TriangleSetup {
     }
 
     /// Whether linear interpolation will do for all attributes, from q at the corners.
-    #[inline(never)]
+    #[inline]
     fn is_straight(&self, q: &[u32; 3], limit: u32) -> bool {
         Bend::new(&edges(&self.corners), *q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
     }

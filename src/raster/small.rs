@@ -190,7 +190,7 @@ impl TriangleSetup {
     }
 
     /// Whether linear interpolation will do for each attribute.
-    #[inline(never)]
+    #[inline]
     fn are_straight(&self, triangle: &Oriented<'_>, needs: &Needs, bend: &Bend, limit: u32) -> bool {
         needs.each_attribute(triangle, self.gray, |_, [a, b, c], scale_log2| {
             let rise = [b.wrapping_sub(a), c.wrapping_sub(a)];
