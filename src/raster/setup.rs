@@ -281,7 +281,7 @@ impl TriangleSetup {
     }
 
     /// Sets an attribute of a bent triangle from its I16F16 values at the corners (within ±2²⁹).
-    #[inline(never)]
+    #[inline]
     fn set_bent_attribute(&mut self, i: usize, at: &[i32; 3], scale_log2: u32, bent: &Bent<'_>) {
         let Some(attribute) = self.attributes.get_mut(i) else {
             return;

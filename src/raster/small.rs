@@ -212,7 +212,7 @@ impl TriangleSetup {
 
     /// Sets attributes as bent. False if the values of one differ by 2²⁷ or more. The last parameter is ∇q/q_mid per column and
     /// row, 16 fraction bits.
-    #[inline(never)]
+    #[inline]
     fn set_bent(
         &mut self,
         triangle: &Oriented<'_>,

@@ -126,7 +126,7 @@ impl Perspective<'_> {
     }
 
     /// The forms that take the change over a pixel: all but the table's.
-    #[inline(never)]
+    #[inline]
     fn set_by_slope(&mut self, near: &Place, rises: bool, steps: u32, (size, down): (u32, i32), way: &Way) {
         for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
             let above = attribute.at(near);
