@@ -105,9 +105,9 @@
 //! # let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
 //! # let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?;
 //! let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, display.size().height);
-//! let gold = Material::flat(Rgb565::CSS_GOLD); // borrowed by the list, as the mesh's vertices are
-//! let mut list = DisplayList::<8, 4, 1>::new(); // at most so many vertices, triangles and draws
-//! camera.draw(&TRIANGLE, &Pose::IDENTITY, &gold, &mut list)?;
+//! let mut memory = ListMemory::<8, 4>::new(); // at most so many vertices and triangles: in a `static`, say
+//! let mut list = DisplayList::<Rgb565, Depth16, 2>::new(&mut memory); // this frame's, of at most two draws
+//! camera.draw(&TRIANGLE, &Pose::IDENTITY, &Material::flat(Rgb565::CSS_GOLD), &mut list)?;
 //! list.render_bands(display.size().height, &sky, &mut band, |area, band| {
 //!     display.fill_contiguous(&area, band.colors()) // 2D on top: draw it into `band` before
 //! })?;
@@ -119,7 +119,7 @@
 //! [`DisplayList::sort_back_to_front`] settles what is in front; two cores can render two bands of one list.
 //!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
-//! particular to a surface is a [`Shader`], of which [`Material`] and [`Textured`] come with the crate.
+//! particular to a surface is a [`Material`], or a [`Shader`] of yours.
 //!
 //! [`PerspectiveImage`] and [`ShadedTriangle`] need no band: they hand their rows straight to a display.
 #![no_std]
@@ -148,8 +148,8 @@ pub use embedded_graphics;
 pub use fixed;
 
 pub use draw::{
-    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, PerspectiveImage, Projected,
-    ShadedTriangle, draw_triangle,
+    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, ListMemory, PerspectiveImage,
+    Projected, ShadedTriangle, View, draw_triangle,
 };
 pub use frame::{
     Background, Band, BigEndian, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat, TargetError,
@@ -160,13 +160,18 @@ pub use scene::{
     Camera, LensError, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, PlaneError, Texture,
     TextureError, Vertex, VertexError, shapes, texels,
 };
-pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Textured, Varying};
+pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Surface, Varying};
+
+/// The kinds of [`Material`], where a type has to be named.
+pub mod material {
+    pub use crate::shade::{Clamped, Flat, Gouraud, Kind, LitClamped, LitTextured, Textured};
+}
 
 /// What most programs use: `use fixel::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        Band, Camera, Cull, Depth16, DisplayList, Light, Lights, Material, Mesh, NoDepth, Pose, Quaternion,
-        Texture, Turn, Vec3, Vertex, texels,
+        Band, Camera, Cull, Depth16, DisplayList, Light, Lights, ListMemory, Material, Mesh, NoDepth, Pose,
+        Quaternion, Texture, Turn, Vec3, Vertex, texels,
     };
 }
 

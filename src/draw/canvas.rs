@@ -1,43 +1,49 @@
-//! What a camera can draw to: a band, at once, or a display list, for later.
+//! What can be drawn to: a band, at once, or a display list, for later.
 
 use super::mesh::draw;
 use crate::frame::{Band, DepthFormat, PixelFormat};
 use crate::geometry::Count;
 use crate::math::Pose;
-use crate::scene::{Camera, Mesh};
-use crate::shade::Shader;
+use crate::scene::{Camera, Lights, Mesh};
+use crate::shade::Surface;
 
 /// What [`Camera::draw`] draws to: a [`Band`], at once, or a [`DisplayList`](super::DisplayList), for later.
 ///
-/// A list keeps the shader and the mesh's vertices borrowed, for `'a`; a band does not.
-pub trait Canvas<'a, S>: sealed::Sealed {
+/// A list keeps the mesh's vertices, the material's texture and shaders borrowed, for `'a`; a band does not.
+pub trait Canvas<'a>: sealed::Sealed {
+    /// How its pixels are stored.
+    type Format: PixelFormat;
+    /// How its depths are.
+    type Depth: DepthFormat;
     /// `()` of a band, where drawing cannot fail; a `Result` of a list.
     type Output;
 
     #[doc(hidden)]
     fn draw_mesh(
         &mut self,
-        camera: &Camera,
+        view: (&Camera, Option<&Lights<'_>>),
         mesh: &Mesh<'a>,
         pose: &Pose,
-        shader: &'a S,
+        surface: &Surface<'a, Self::Format, Self::Depth>,
         stats: &mut impl Count,
     ) -> Self::Output;
 }
 
-impl<'a, F: PixelFormat, D: DepthFormat, S: Shader<F>> Canvas<'a, S> for Band<'_, F, D> {
+impl<'a, F: PixelFormat, D: DepthFormat> Canvas<'a> for Band<'_, F, D> {
+    type Format = F;
+    type Depth = D;
     type Output = ();
 
     #[inline]
     fn draw_mesh(
         &mut self,
-        camera: &Camera,
+        view: (&Camera, Option<&Lights<'_>>),
         mesh: &Mesh<'a>,
         pose: &Pose,
-        shader: &'a S,
+        surface: &Surface<'a, F, D>,
         stats: &mut impl Count,
     ) {
-        draw(mesh, camera.projection(), camera.placement(), pose, shader, self, stats);
+        draw(mesh, view, pose, surface, self, stats);
     }
 }
 

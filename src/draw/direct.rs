@@ -16,14 +16,15 @@
 //! Runs begin where the row does, not where the target does: what a pixel shows does not depend on how much of the
 //! screen the target is, so a part of a picture that is drawn anew fits the rest.
 
-use super::triangle::needs;
 use crate::frame::{NoDepth, PixelFormat, Window};
-use crate::geometry::{Clip, Coloring, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, piece, position};
+use crate::geometry::{
+    Clip, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, VertexColors, piece, position,
+};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Cover, Run, Shader, Textured};
+use crate::shade::{Cover, Material, Run, Shader, Textured, Traits, is_small};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -91,10 +92,10 @@ where
         if rows.are_none() || left >= shown.columns.end || right <= shown.columns.start {
             return Ok(());
         }
-        let needs: Needs = needs::<F, NoDepth, S>(shader, [is_orthographic, false]);
+        let needs: Needs = Traits::of::<F, S>(shader).needs(false, is_orthographic, false);
         let fits = needs.small && RUN > STRAIGHT as usize;
         setup.set(&triangle, &needs, fits && rows.are_simple());
-        if fits && Cover::<F::Word, NoDepth>::is_small(setup, rows) {
+        if fits && is_small(setup, rows) {
             return self.draw_small(shader);
         }
         let mut result = Ok(());
@@ -148,7 +149,7 @@ where
             }
             let origin = (start as usize).wrapping_neg();
             let (rows, pixels) = (&mut row, &mut run[..]);
-            shader.paint(Cover::<F::Word, NoDepth> {
+            shader.paint(&mut Cover::<F, NoDepth> {
                 setup,
                 rows,
                 window,
@@ -263,7 +264,7 @@ const HALVES: [[usize; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 /// One side of a picture: a texture, and where in it the picture's corners are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Side<'a> {
-    pub(crate) shader: Textured<'a>,
+    pub(crate) shader: Material<'a, Textured>,
     pub(crate) uv: [[I12F4; 2]; 4],
     /// Which side of the triangles it is not.
     pub(crate) cull: Cull,
@@ -312,7 +313,7 @@ impl Quad {
         }
         let (mut corners, mut are_cut_off) = ([ScreenVertex::default(); 4], [false; 4]);
         for i in 0..4 {
-            are_cut_off[i] = !clip.place(&to_clip, &Coloring::default(), &vertices[i], &mut corners[i]);
+            are_cut_off[i] = !clip.place(&to_clip, &VertexColors::default(), &vertices[i], &mut corners[i]);
         }
         let (viewport, is_orthographic) = (projection.viewport, projection.orthographic);
         let is_mirrored = camera.is_mirrored() != pose.is_mirrored();
@@ -385,6 +386,6 @@ impl Posed {
     #[inline(never)]
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
-        self.clip.cut(&self.to_clip, &Coloring::default(), triangle.each_ref(), to)
+        self.clip.cut(&self.to_clip, &VertexColors::default(), triangle.each_ref(), to)
     }
 }

@@ -1,32 +1,28 @@
 //! One mesh drawn at once: from its vertices to the words in a band.
 //!
-//! - In: a mesh, its pose, a camera's projection, a shader.
+//! - In: a mesh, its pose, a view and a surface.
 //! - Out: words and depths in the band.
 //! - Assumes: nothing: a mesh that is out of sight is left out whole.
 
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry::{Assembler, Clip, Coloring, Count, ToClip, VertexCache};
+use crate::geometry::{Assembler, Clip, Count, ToClip, VertexCache};
 use crate::math::Pose;
-use crate::scene::{Mesh, Projection};
-use crate::shade::Shader;
+use crate::scene::{Camera, Lights, Mesh};
+use crate::shade::Surface;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
-pub(crate) fn draw<F, D, S>(
+pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     mesh: &Mesh<'_>,
-    projection: &Projection,
-    camera: &Pose,
+    (camera, lights): (&Camera, Option<&Lights<'_>>),
     pose: &Pose,
-    shader: &S,
+    surface: &Surface<'_, F, D>,
     band: &mut Band<'_, F, D>,
     stats: &mut impl Count,
-) where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
+) {
     stats.count(|stats| &mut stats.meshes);
-    let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
+    let (projection, camera) = (camera.projection(), camera.placement());
+    let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
     let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
@@ -35,16 +31,9 @@ pub(crate) fn draw<F, D, S>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let lit;
-    let coloring = if S::LIT {
-        lit = coloring::<F, S>(shader, pose);
-        &lit
-    } else {
-        &Coloring::OWN
-    };
-    let light_face = if S::LIT && coloring.is_faceted() { Some(Assembler::light_face as _) } else { None };
-    let assembler = Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring, cull, light_face };
-    let mut raster = Raster::new(shader, [projection.orthographic, false], window, band);
+    let (colors, light_face) = surface.coloring.colors(lights, pose);
+    let assembler = Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring: &colors, cull, light_face };
+    let mut raster = Raster::new(&surface.look, [projection.orthographic, false], window, band);
     let mut cache = VertexCache::ZERO;
     cache.forget();
     loop {
@@ -56,10 +45,4 @@ pub(crate) fn draw<F, D, S>(
         };
         raster.draw_folded(polygon, cull, stats);
     }
-}
-
-/// Not inlined: what it takes is not on the stack while pixels are drawn.
-#[inline(never)]
-fn coloring<'p, F: PixelFormat, S: Shader<F>>(shader: &S, pose: &'p Pose) -> Coloring<'p> {
-    shader.coloring(pose)
 }

@@ -7,9 +7,11 @@ mod list;
 mod mesh;
 mod pictures;
 mod triangle;
+mod view;
 
 pub use camera::Projected;
 pub use canvas::Canvas;
-pub use list::{CapacityError, Changes, DisplayList, Flushed};
+pub use list::{CapacityError, Changes, DisplayList, Flushed, ListMemory};
 pub use pictures::{CornersError, PerspectiveImage, ShadedTriangle};
 pub use triangle::draw_triangle;
+pub use view::View;

@@ -9,7 +9,7 @@ use crate::geometry::{Cull, RangeError, ScreenVertex};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4, I16F16, U1F31};
 use crate::scene::{Camera, Projection, Texture};
-use crate::shade::{Shader, Textured};
+use crate::shade::{Material, Shader};
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics::Drawable;
@@ -46,7 +46,7 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// All of the texture, or a [part](Self::part) of it, from border to border. Nothing of what is beyond shows: neither
 /// other parts of the texture nor its opposite border. A part that reaches beyond the texture shows it again there,
-/// as [`Textured`] does. Where a texel is a pixel, seen straight and from whole pixels on, each texel shows once.
+/// as [`Material::textured`] does. Where a texel is a pixel, seen straight and from whole pixels on, each texel shows once.
 ///
 /// Its back is not seen, unless there is a picture on it ([`Self::back`]) or it is transparent ([`Self::two_sided`]).
 ///
@@ -125,7 +125,7 @@ impl<'a> Picture<'a> {
         let [left, top, right, bottom] = self.sides;
         let [left, right] = if mirrored { [right, left] } else { [left, right] };
         Side {
-            shader: Textured::new(&self.texture),
+            shader: Material::textured(&self.texture),
             uv: [[left, top], [left, bottom], [right, bottom], [right, top]],
             cull,
         }

@@ -6,8 +6,8 @@
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
-use crate::raster::{Needs, Packing, Rows, Runs, Straight, TriangleSetup};
-use crate::shade::{Cover, Quality, Shader};
+use crate::raster::{Needs, Rows, Runs, TriangleSetup};
+use crate::shade::{Cover, Look, Surface};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
@@ -18,49 +18,23 @@ use crate::shade::{Cover, Quality, Shader};
 ///
 /// [`RangeError`] if a vertex lies outside the guard band of ±1023½ px or a texture coordinate beyond ±8192
 /// texels; nothing is drawn then.
-pub fn draw_triangle<F, D, S>(
+pub fn draw_triangle<'a, F: PixelFormat, D: DepthFormat>(
     vertices: &[ScreenVertex; 3],
     cull: Cull,
-    shader: &S,
+    surface: impl Into<Surface<'a, F, D>>,
     band: &mut Band<'_, F, D>,
-) -> Result<(), RangeError>
-where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
+) -> Result<(), RangeError> {
     if !vertices.iter().all(ScreenVertex::in_range) {
         return Err(RangeError);
     }
     let window = band.window();
-    Raster::new(shader, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
+    Raster::new(&surface.into().look, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
     Ok(())
 }
 
-pub(crate) fn needs<F: PixelFormat, D: DepthFormat, S: Shader<F>>(
-    shader: &S,
-    [is_orthographic, is_gray]: [bool; 2],
-) -> Needs {
-    let texture_scale = shader.texture_scale().min(8);
-    let inputs = shader.inputs();
-    let packing = Packing::new(shader.packed_log2(), texture_scale, inputs);
-    Needs {
-        inputs,
-        straight: if is_orthographic { Straight::Always } else { S::Quality::STRAIGHT },
-        every_pixel: S::Quality::EVERY_PIXEL,
-        finer: [0; 2],
-        // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
-        scale_log2: [texture_scale, core::hint::black_box(texture_scale)],
-        packings: [packing; 2],
-        small: shader.has_small(),
-        depth: !D::ALWAYS_PASSES,
-        gray: is_gray,
-    }
-}
-
 /// The stages from set-up on.
-pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
-    shader: &'a S,
+pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat> {
+    look: &'a Look<'a, F, D>,
     band: &'a mut Band<'b, F, D>,
     window: Window,
     needs: Needs,
@@ -68,25 +42,28 @@ pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat, S> {
     rows: Rows,
 }
 
-impl<'a, 'b, F, D, S> Raster<'a, 'b, F, D, S>
-where
-    F: PixelFormat,
-    D: DepthFormat,
-    S: Shader<F>,
-{
+impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     /// For a camera that may be orthographic, and colours that may all be grey.
     ///
     /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
     #[inline(never)]
-    pub(crate) fn new(shader: &'a S, kind: [bool; 2], window: Window, band: &'a mut Band<'b, F, D>) -> Self {
-        let (setup, rows) = (TriangleSetup::new(), Rows::default());
-        Self { shader, band, window, needs: needs::<F, D, S>(shader, kind), setup, rows }
+    pub(crate) fn new(
+        look: &'a Look<'a, F, D>,
+        kind: [bool; 2],
+        window: Window,
+        band: &'a mut Band<'b, F, D>,
+    ) -> Self {
+        let (setup, rows, needs) = (TriangleSetup::new(), Rows::default(), Self::needs(look, kind));
+        Self { look, band, window, needs, setup, rows }
     }
 
-    /// The same for another shader and window.
-    pub(crate) fn change(&mut self, shader: &'a S, kind: [bool; 2], window: Window) {
-        (self.shader, self.window) = (shader, window);
-        self.needs = needs::<F, D, S>(shader, kind);
+    /// The same for another surface and window.
+    pub(crate) fn change(&mut self, look: &'a Look<'a, F, D>, kind: [bool; 2], window: Window) {
+        (self.look, self.window, self.needs) = (look, window, Self::needs(look, kind));
+    }
+
+    fn needs(look: &Look<'_, F, D>, [is_orthographic, is_gray]: [bool; 2]) -> Needs {
+        look.traits.needs(!D::ALWAYS_PASSES, is_orthographic, is_gray)
     }
 
     #[inline]
@@ -139,6 +116,6 @@ where
         let (top, width) = (usize::from(self.band.top), usize::from(self.band.width));
         let origin = 0usize.wrapping_sub(top * width);
         let (pixels, depth) = (&mut *self.band.pixels, &mut *self.band.depth);
-        self.shader.paint(Cover::<F::Word, D> { setup, rows, window, origin, width, pixels, depth });
+        self.look.paint(&mut Cover { setup, rows, window, origin, width, pixels, depth });
     }
 }

@@ -7,7 +7,7 @@
 use crate::num::U1F31;
 
 /// How depth is stored, and which of two surfaces is visible: a test, and a store for what was drawn.
-pub trait DepthFormat {
+pub trait DepthFormat: 'static {
     /// The depth of one pixel in memory.
     type Word: Copy;
 

@@ -12,7 +12,7 @@ use embedded_graphics::prelude::RawData;
 ///
 /// A colour type that is its own format is stored as a word in the machine's byte order. [`BigEndian`] has the order that
 /// most SPI displays want, so that rows can be sent as they are.
-pub trait PixelFormat {
+pub trait PixelFormat: 'static {
     /// One pixel in memory.
     type Word: Copy;
     /// The colour that 2D drawing uses.

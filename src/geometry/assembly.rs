@@ -9,13 +9,13 @@
 //! triangle that has to be clipped takes the cache's memory for its polygon, and the cache is empty afterwards.
 
 use super::clip::Clip;
-use super::coloring::{Coloring, dim};
 use super::cut::MOST_CORNERS;
 use super::fan::piece;
 use super::orient::{Cull, Oriented, area, position};
 use super::screen::ScreenVertex;
 use super::stats::Count;
 use super::transform::ToClip;
+use super::vertex_colors::{VertexColors, dim};
 use crate::num::I16F16;
 use crate::scene::{Mesh, Vertex};
 
@@ -104,17 +104,20 @@ fn in_cache(slot: usize) -> Option<usize> {
     (slot < CACHED).then_some(slot)
 }
 
+/// The type of [`light_face`].
+pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache, usize);
+
 /// The stages before set-up, for one mesh. Its functions are not inlined, so that their stack frames are gone while pixels are
 /// drawn.
 pub(crate) struct Assembler<'a> {
     pub(crate) mesh: &'a Mesh<'a>,
     pub(crate) to_clip: &'a ToClip,
     pub(crate) clip: &'a Clip,
-    pub(crate) coloring: &'a Coloring<'a>,
+    pub(crate) coloring: &'a VertexColors<'a>,
     pub(crate) cull: Cull,
-    /// [`Assembler::light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
+    /// [`light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
     /// programs without lights.
-    pub(crate) light_face: Option<fn(&Self, &mut VertexCache, usize)>,
+    pub(crate) light_face: Option<LightFace>,
 }
 
 impl Assembler<'_> {
@@ -204,25 +207,6 @@ impl Assembler<'_> {
         to.set_attributes(self.mesh.vertex(index), self.coloring);
     }
 
-    /// Multiplies the colours of the triangle last looked at by the light on its face. `polygon_corners` is 0 if it was not
-    /// clipped. Then its vertices in the cache get their attributes anew first, since they may have the light of another
-    /// triangle. If it was clipped, the corners of its polygon are the first so many vertices.
-    pub(crate) fn light_face(&self, cache: &mut VertexCache, polygon_corners: usize) {
-        let indices = self.last(cache);
-        let Some(light) = self.coloring.on_face(self.corners(cache)) else {
-            return;
-        };
-        // The cache may hold a vertex twice: both are lit.
-        for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
-            if polygon_corners == 0 && indices.contains(owner) {
-                vertex.set_attributes(self.mesh.vertex(*owner), self.coloring);
-                dim(&mut vertex.color, light);
-            } else if i < polygon_corners {
-                dim(&mut vertex.color, light);
-            }
-        }
-    }
-
     /// The indices of the triangle last looked at.
     fn last(&self, cache: &VertexCache) -> [u16; 3] {
         self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
@@ -270,5 +254,24 @@ impl Assembler<'_> {
     #[inline(never)]
     fn piece<'c>(&self, cache: &'c VertexCache) -> Option<Oriented<'c>> {
         Oriented::new(piece(&cache.vertices, cache.pieces.into())?, self.cull)
+    }
+}
+
+/// Multiplies the colours of the triangle last looked at by the light on its face. `polygon_corners` is 0 if it was not
+/// clipped. Then its vertices in the cache get their attributes anew first, since they may have the light of another
+/// triangle. If it was clipped, the corners of its polygon are the first so many vertices.
+pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache, polygon_corners: usize) {
+    let indices = assembler.last(cache);
+    let Some(light) = assembler.coloring.on_face(assembler.corners(cache)) else {
+        return;
+    };
+    // The cache may hold a vertex twice: both are lit.
+    for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
+        if polygon_corners == 0 && indices.contains(owner) {
+            vertex.set_attributes(assembler.mesh.vertex(*owner), assembler.coloring);
+            dim(&mut vertex.color, light);
+        } else if i < polygon_corners {
+            dim(&mut vertex.color, light);
+        }
     }
 }

@@ -16,9 +16,9 @@
 //!   └────────────────────────────────┘
 //! ```
 
-use super::coloring::Coloring;
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
+use super::vertex_colors::VertexColors;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
@@ -173,7 +173,7 @@ impl Clip {
     pub(crate) fn place(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring<'_>,
+        coloring: &VertexColors<'_>,
         vertex: &Vertex,
         to: &mut ScreenVertex,
     ) -> bool {

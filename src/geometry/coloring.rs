@@ -1,110 +1,76 @@
-//! The colour of a vertex: its own or a material's, times the light that arrives there.
+//! The rule for the colours of a mesh's vertices: what a material or a shader says of them, before there is a mesh or a light.
 //!
-//! - In: a vertex, or the corners of a face.
-//! - Out: the vertex's colour, or the light on the face; in U8F8 per channel, 0 … 255.
-//! - Assumes: lights were brought to mesh space.
+//! - In: a material's colour, and whether light falls on it.
+//! - Out: the colours of the vertices during one draw, once a pose and the view's lights are known.
+//! - Assumes: nothing.
 //!
-//! Light is computed per vertex (smooth shading) or per triangle (flat shading). With flat shading a vertex's colour comes out
-//! unlit. The caller multiplies it by the light on the face, anew for each face that the vertex belongs to.
+//! A rule refers to the functions that compute light. So only programs in which a rule is lit link them.
 
-use crate::num::U8F8;
-use crate::scene::{Lighting, Vertex};
+use super::assembly::{LightFace, light_face};
+use super::vertex_colors::{FACETED, Light, LightCode, SMOOTH, VertexColors};
+use crate::math::Pose;
+use crate::scene::Lights;
 
-/// Where the colour of a mesh's vertices comes from, during one draw call. The default is the vertices' own colour, unlit.
-#[derive(Debug, Default)]
-pub struct Coloring<'p> {
+/// Where the colour of a mesh's vertices comes from. The default is the vertices' own colour, unlit.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Coloring {
     /// Red, green and blue of all vertices; `None`: each has its own.
     base: Option<[u8; 3]>,
-    light: Option<Light<'p>>,
-}
-
-#[derive(Debug)]
-struct Light<'p> {
-    lighting: Lighting<'p>,
-    shading: Shading,
-    /// Whether light from behind counts as if it came from in front.
+    light: Option<&'static LightCode>,
+    /// In place of `light`, where there is any.
+    on_faces: Option<(&'static LightCode, LightFace)>,
     two_sided: bool,
 }
 
-/// Per vertex (smooth) or per face (flat), and the function that computes light there. Function pointers, so that the linker
-/// drops lighting from programs that do not use it.
-#[derive(Debug)]
-enum Shading {
-    Smooth(fn(&Light<'_>, &[u8; 3], &Vertex, &mut [U8F8; 3])),
-    Faceted(fn(&Light<'_>, [&Vertex; 3]) -> [U8F8; 3]),
-}
-
-/// A colour times the light at its vertex. (White is the light itself.)
-fn at_vertex(light: &Light<'_>, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
-    light.lighting.at_vertex(vertex, light.two_sided, to);
-    if color[0] & color[1] & color[2] != 255 {
-        for i in 0..3 {
-            to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
-        }
-    }
-}
-
-/// The light on a face.
-fn at_face(light: &Light<'_>, corners: [&Vertex; 3]) -> [U8F8; 3] {
-    light.lighting.at_face(corners.map(|vertex| vertex.position), light.two_sided)
-}
-
-impl<'p> Coloring<'p> {
+impl Coloring {
     /// The vertices' own colour, unlit.
-    pub(crate) const OWN: Self = Self { base: None, light: None };
+    pub const OWN: Self = Self { base: None, light: None, on_faces: None, two_sided: false };
 
-    /// `base`, or the vertices' own colour if that is `None`, times light. Light is computed per vertex, or per triangle if
-    /// `faceted` (flat shading). If `two_sided`, light from behind a surface counts as light from in front does.
+    /// One colour for all vertices, unlit.
     #[must_use]
-    pub const fn lit(base: Option<[u8; 3]>, lighting: Lighting<'p>, faceted: bool, two_sided: bool) -> Self {
-        let shading = if faceted { Shading::Faceted(at_face) } else { Shading::Smooth(at_vertex) };
-        Self { base, light: Some(Light { lighting, shading, two_sided }) }
+    pub const fn of(color: [u8; 3]) -> Self {
+        Self::OWN.with_base(color)
     }
 
-    /// A vertex's colour; with flat shading without light, which is still to come [from its face](Coloring::on_face).
-    #[inline]
-    pub(crate) fn of_vertex(&self, vertex: &Vertex, to: &mut [U8F8; 3]) {
-        let color = self.base.as_ref().unwrap_or(&vertex.color);
-        match &self.light {
-            Some(light @ Light { shading: Shading::Smooth(at_vertex), .. }) => {
-                at_vertex(light, color, vertex, to);
-            }
-            _ => *to = color.map(U8F8::from_num),
-        }
+    pub(crate) const fn with_base(self, color: [u8; 3]) -> Self {
+        Self { base: Some(color), ..self }
     }
 
-    /// Whether shading is flat: colours are still to be multiplied by the light [on their face](Coloring::on_face).
-    #[inline]
-    pub(crate) fn is_faceted(&self) -> bool {
-        matches!(self.light, Some(Light { shading: Shading::Faceted(_), .. }))
+    /// The same times the light of the view: computed at each vertex, by its normal (smooth shading).
+    #[must_use]
+    pub const fn lit(self) -> Self {
+        Self { light: Some(SMOOTH), ..self }
     }
 
-    /// The light on a triangle with flat shading, which its colours are to be [multiplied](dim) by; else `None`.
-    pub(crate) fn on_face(&self, corners: [&Vertex; 3]) -> Option<[U8F8; 3]> {
-        match &self.light {
-            Some(light @ Light { shading: Shading::Faceted(at_face), .. }) => Some(at_face(light, corners)),
-            _ => None,
-        }
+    /// The same with light, where there is any, computed once a triangle (flat shading).
+    #[must_use]
+    pub const fn faceted(self) -> Self {
+        Self { on_faces: Some((FACETED, light_face)), ..self }
     }
-}
 
-/// Whether a colour's channels are the same.
-#[inline]
-pub(crate) fn is_gray<T: PartialEq>([red, green, blue]: [T; 3]) -> bool {
-    red == green && green == blue
-}
-
-/// Multiplies a colour by light, of which 255 is full.
-#[inline(never)]
-pub(crate) fn dim(color: &mut [U8F8; 3], light: [U8F8; 3]) {
-    for (channel, light) in color.iter_mut().zip(light) {
-        *channel = over_255((u32::from(channel.to_bits()) * u32::from(light.to_bits())) >> 8);
+    /// The same with light from behind a surface counting as light from in front does.
+    #[must_use]
+    pub const fn two_sided(self) -> Self {
+        Self { two_sided: true, ..self }
     }
-}
 
-/// `product` / 255, both with 8 fraction bits, off by less than 1/256. Exact if one factor is 255 and the other at most that.
-#[inline]
-fn over_255(product: u32) -> U8F8 {
-    // 257/2¹⁶ = (1 − 2⁻¹⁶)/255, so the quotient is a little low: it is rounded up. The largest product, 255 · 255.0, just fits.
-    U8F8::from_bits(((product * 257 + 0xffff) >> 16) as u16)
+    /// The colours of a mesh in this pose, in the light of a view; and with flat shading what lights a face. Without lights
+    /// nothing is dark: colours are as they are unlit.
+    ///
+    /// Not inlined: what it takes is not on the stack while pixels are drawn.
+    #[inline(never)]
+    pub(crate) fn colors<'p>(
+        &self,
+        lights: Option<&Lights<'_>>,
+        pose: &'p Pose,
+    ) -> (VertexColors<'p>, Option<LightFace>) {
+        let Some((lights, smooth)) = lights.zip(self.light) else {
+            return (VertexColors::new(self.base, None), None);
+        };
+        let (code, light_face) = match self.on_faces {
+            Some((code, light_face)) => (code, Some(light_face)),
+            None => (smooth, None),
+        };
+        (VertexColors::new(self.base, Some(Light::new(code, lights, pose, self.two_sided))), light_face)
+    }
 }

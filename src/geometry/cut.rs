@@ -36,10 +36,10 @@
 //! for want of bits. (A corner that a matrix that is no rotation takes farther is put on the guard band's border.)
 
 use super::clip::{CUT_AT, Clip, FINER};
-use super::coloring::Coloring;
 use super::fan::center;
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip};
+use super::vertex_colors::VertexColors;
 use crate::math::recip::Reciprocal;
 use crate::num::{I12F4, I16F16, U8F8, mul_long, wide};
 use crate::scene::Vertex;
@@ -142,7 +142,7 @@ impl Clip {
     pub(crate) fn cut(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring<'_>,
+        coloring: &VertexColors<'_>,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
     ) -> (usize, bool) {
@@ -172,7 +172,7 @@ impl Clip {
     fn start(
         &self,
         to_clip: &ToClip,
-        coloring: &Coloring<'_>,
+        coloring: &VertexColors<'_>,
         vertex: &Vertex,
         polygon: &mut Polygon<'_>,
         i: usize,

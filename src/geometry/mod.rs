@@ -9,11 +9,11 @@ mod orient;
 mod screen;
 mod stats;
 mod transform;
+mod vertex_colors;
 
 pub(crate) use assembly::{Assembler, VertexCache};
 pub(crate) use clip::Clip;
 pub use coloring::Coloring;
-pub(crate) use coloring::{dim, is_gray};
 pub(crate) use cut::MOST_CORNERS;
 pub(crate) use fan::piece;
 #[cfg(test)]
@@ -24,3 +24,4 @@ pub use screen::{Inputs, RangeError, ScreenVertex};
 pub(crate) use stats::Count;
 pub use stats::Stats;
 pub(crate) use transform::ToClip;
+pub(crate) use vertex_colors::{VertexColors, dim, is_gray};

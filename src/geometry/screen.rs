@@ -10,7 +10,7 @@
 //!
 //! The *guard band* is the area around the screen in which positions have to lie. Triangles that reach out of it are clipped.
 
-use super::coloring::Coloring;
+use super::vertex_colors::VertexColors;
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
 use crate::scene::Vertex;
 use core::fmt;
@@ -64,7 +64,7 @@ impl ScreenVertex {
 
     /// Sets all but position and q: u and v from a vertex of a mesh, and the colour that it gets.
     #[inline]
-    pub(crate) fn set_attributes(&mut self, vertex: &Vertex, coloring: &Coloring) {
+    pub(crate) fn set_attributes(&mut self, vertex: &Vertex, coloring: &VertexColors<'_>) {
         [self.u, self.v] = vertex.uv.map(I16F16::from);
         coloring.of_vertex(vertex, &mut self.color);
     }

@@ -37,7 +37,7 @@ use crate::math::recip::short_of;
 use crate::num::mul_16;
 
 /// Which triangles a quality draws as straight ones.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Straight {
     /// All.
     Always,

@@ -33,6 +33,15 @@ pub struct Texture<'a> {
     multiplier: u32,
 }
 
+/// The same texels in memory, seen in the same size: their values are not compared.
+impl PartialEq for Texture<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        core::ptr::eq(self.texels, other.texels) && self.log2() == other.log2()
+    }
+}
+
+impl Eq for Texture<'_> {}
+
 /// The largest log₂ of a side.
 const MAX_LOG2: u32 = 10;
 

@@ -9,62 +9,64 @@
 //! several.
 
 use super::fill::{Even, Fill, FillRow};
+use super::patch::is_small;
 use super::perspective::Perspective;
 use super::quality::Quality;
 use super::quality::sealed::Sealed;
 use super::shader::Pixels;
-use crate::frame::{DepthFormat, Window};
+use crate::frame::{DepthFormat, PixelFormat, Window};
 use crate::raster::{Rows, TriangleSetup, first_visible, visible};
 
 /// A triangle, and the memory that it is drawn to.
-pub(crate) struct Cover<'a, W, D: DepthFormat> {
+pub(crate) struct Cover<'a, F: PixelFormat, D: DepthFormat> {
     pub(crate) setup: &'a TriangleSetup,
     pub(crate) rows: &'a mut Rows,
     pub(crate) window: &'a Window,
     /// The index of column 0 of row 0 among `pixels`, which wraps as it may lie before them. A row further it is `width` more.
     pub(crate) origin: usize,
     pub(crate) width: usize,
-    pub(crate) pixels: &'a mut [W],
+    pub(crate) pixels: &'a mut [F::Word],
     /// Empty if it is never tested.
     pub(crate) depth: &'a mut [D::Word],
 }
 
-impl<W, D: DepthFormat> Sealed for Cover<'_, W, D> {}
+impl<F: PixelFormat, D: DepthFormat> Sealed for &mut Cover<'_, F, D> {}
 
-impl<W: Copy, D: DepthFormat, Q: Quality> Pixels<W, Q> for Cover<'_, W, D> {
+impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cover<'_, F, D> {
     #[inline]
     fn is_gray(&self) -> bool {
         self.setup.gray
     }
 
     #[inline]
-    fn fill_evenly(self, word: W) {
+    fn fill_evenly(self, word: F::Word) {
         self.draw(&Even(word));
     }
 
     #[inline]
-    fn fill<const N: usize, L: Fill<W> + FillRow<N, Word = W>>(self, fill: &L) {
+    fn fill<const N: usize, L: Fill<F::Word> + FillRow<N, Word = F::Word>>(self, fill: &L) {
         self.draw(fill);
     }
 
     #[inline]
-    fn fill_rows(self, fill: &dyn Fill<W>) {
+    fn fill_rows(self, fill: &dyn Fill<F::Word>) {
         self.draw_rows(fill);
     }
 }
 
-impl<W, D: DepthFormat> Cover<'_, W, D> {
+impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
     #[inline]
-    fn draw<const N: usize, L: Fill<W> + FillRow<N, Word = W>>(self, fill: &L) {
-        if Self::is_small(self.setup, self.rows) {
+    fn draw<const N: usize, L: Fill<F::Word> + FillRow<N, Word = F::Word>>(&mut self, fill: &L) {
+        if is_small(self.setup, self.rows) {
             return self.draw_small(fill);
         }
         self.draw_rows(fill);
     }
 
     #[inline(never)]
-    fn draw_rows(self, fill: &dyn Fill<W>) {
+    fn draw_rows(&mut self, fill: &dyn Fill<F::Word>) {
         let Self { setup, rows, window, origin, width, pixels, depth } = self;
+        let (setup, origin, width) = (*setup, *origin, *width);
         let mut line = Perspective::new(setup, fill.units());
         rows.each(window, |y, start, end| {
             let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
@@ -84,7 +86,14 @@ impl<W, D: DepthFormat> Cover<'_, W, D> {
                 };
                 let passed = first_visible::<D>(depth, z);
                 if passed != Some(count) {
-                    return draw_visible::<W, D>(&mut line, [start, y], pixels, (depth, z), fill, passed);
+                    return draw_visible::<F::Word, D>(
+                        &mut line,
+                        [start, y],
+                        pixels,
+                        (depth, z),
+                        fill,
+                        passed,
+                    );
                 }
             }
             line.draw(start, y, pixels, fill);

@@ -14,19 +14,20 @@
 use super::cover::Cover;
 use super::fill::FillRow;
 use super::row::Row;
-use crate::frame::DepthFormat;
+use crate::frame::{DepthFormat, PixelFormat};
 use crate::raster::{Rows, STRAIGHT, TriangleSetup};
 
-impl<W, D: DepthFormat> Cover<'_, W, D> {
-    /// Whether a triangle is drawn at one go.
-    #[inline]
-    pub(crate) fn is_small(setup: &TriangleSetup, rows: &Rows) -> bool {
-        setup.is_small && setup.straight && rows.are_simple()
-    }
+/// Whether a triangle is drawn at one go.
+#[inline]
+pub(crate) fn is_small(setup: &TriangleSetup, rows: &Rows) -> bool {
+    setup.is_small && setup.straight && rows.are_simple()
+}
 
+impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
     #[inline(never)]
-    pub(super) fn draw_small<const N: usize, L: FillRow<N, Word = W>>(self, fill: &L) {
+    pub(super) fn draw_small<const N: usize, L: FillRow<N, Word = F::Word>>(&mut self, fill: &L) {
         let Self { setup, rows, origin, width, pixels, depth, .. } = self;
+        let (setup, origin, width) = (*setup, *origin, *width);
         // Where column 0 of the first row would be.
         let mut row = origin.wrapping_add((rows.row() as usize).wrapping_mul(width));
         let Some(attributes) = setup.attributes.first_chunk::<N>() else {
@@ -76,7 +77,7 @@ impl<W, D: DepthFormat> Cover<'_, W, D> {
                 };
                 if let (Some(pixels), Some(depth)) = (part(&mut *pixels), depth) {
                     let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
-                    fill.row(Row::<W, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
+                    fill.row(Row::<F::Word, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
                 }
                 m += steps + 1;
             }

@@ -8,7 +8,6 @@ use super::fill::{Each, Fill, FillRow};
 use super::quality::{Quality, sealed::Sealed};
 use crate::frame::PixelFormat;
 use crate::geometry::{Coloring, Cull, Inputs};
-use crate::math::Pose;
 use crate::num::I16F16;
 
 /// The attributes at one pixel centre; those that a shader does not read are 0.
@@ -54,10 +53,6 @@ pub trait Shader<F: PixelFormat> {
     /// How exactly the attributes follow perspective.
     type Quality: Quality;
 
-    /// Whether [`Shader::coloring`] may say anything but the default. Without it drawing takes 100 bytes less of the stack.
-    #[doc(hidden)]
-    const LIT: bool = true;
-
     /// Which attributes [`Shader::color`] reads; the fewer, the faster.
     fn inputs(&self) -> Inputs;
 
@@ -69,10 +64,9 @@ pub trait Shader<F: PixelFormat> {
         Cull::Back
     }
 
-    /// What colour the vertices of a mesh in this pose have, for shaders that read it: their own, unless lit.
-    fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
-        let _ = pose;
-        Coloring::default()
+    /// What colour the vertices of a mesh have, for shaders that read it: their own, unless it says otherwise.
+    fn coloring(&self) -> Coloring {
+        Coloring::OWN
     }
 
     /// By how much texture coordinates are multiplied, as a power of two: 2⁰ … 2⁸, so that a plane can repeat its

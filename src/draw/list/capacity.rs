@@ -1,4 +1,4 @@
-//! The error of a display list that is full: which capacity has no room.
+//! The error of a display list that is full: which capacity has no room, and what was needed.
 
 use core::fmt;
 
@@ -9,35 +9,35 @@ pub enum CapacityError {
     Vertices {
         /// How many there can be.
         capacity: usize,
+        /// How many there would be with this draw: exactly, or, where not even the mesh's own vertices fit, without
+        /// those that clipping or flat shading adds.
+        needed: usize,
     },
     /// Of triangles, `T`.
     Triangles {
         /// How many there can be.
         capacity: usize,
+        /// How many there would be with this draw.
+        needed: usize,
     },
-    /// Of draws, `D`.
+    /// Of draws, `N`.
     Draws {
         /// How many there can be.
         capacity: usize,
+        /// How many there would be with this one.
+        needed: usize,
     },
 }
 
 impl fmt::Display for CapacityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (capacity, what) = match self {
-            Self::Vertices { capacity } => (capacity, "vertices"),
-            Self::Triangles { capacity } => (capacity, "triangles"),
-            Self::Draws { capacity } => (capacity, "draws"),
+        let (capacity, needed, what) = match self {
+            Self::Vertices { capacity, needed } => (capacity, needed, "vertices"),
+            Self::Triangles { capacity, needed } => (capacity, needed, "triangles"),
+            Self::Draws { capacity, needed } => (capacity, needed, "draws"),
         };
-        write!(f, "the display list has no room for more than {capacity} {what}")
+        write!(f, "the display list has room for {capacity} {what}, and {needed} are needed")
     }
 }
 
 impl core::error::Error for CapacityError {}
-
-/// Which capacity is full.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Full {
-    Vertices,
-    Triangles,
-}

@@ -9,7 +9,6 @@
 use super::display_list::DisplayList;
 use super::extent::Extent;
 use crate::frame::{Background, Band, DepthFormat, PixelFormat};
-use crate::shade::Shader;
 use embedded_graphics::geometry::Size;
 use embedded_graphics::primitives::Rectangle;
 
@@ -73,11 +72,7 @@ impl<const BANDS: usize> Default for Changes<BANDS> {
     }
 }
 
-impl<'a, const V: usize, const T: usize, const D: usize, S, F> DisplayList<'a, V, T, D, S, F>
-where
-    S: Shader<F>,
-    F: PixelFormat,
-{
+impl<F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'_, F, D, N> {
     /// As [`DisplayList::render_bands`], without what is on the display already. Bands in which nothing changed are skipped.
     /// For each of the others `flush` gets the rectangle that changed; [`Band::colors_in`] and [`Band::rows_in`] give its
     /// pixels.
@@ -87,13 +82,13 @@ where
     /// # Errors
     ///
     /// The first of `flush`. The rest is not drawn then; the next frame is drawn and sent whole.
-    pub fn render_changed<'b, const BANDS: usize, Z: DepthFormat, E>(
+    pub fn render_changed<'b, const BANDS: usize, E>(
         &self,
         height: u32,
         background: &impl Background<F>,
-        band: &mut Band<'b, F, Z>,
+        band: &mut Band<'b, F, D>,
         changes: &mut Changes<BANDS>,
-        mut flush: impl FnMut(Rectangle, &mut Band<'b, F, Z>) -> Result<(), E>,
+        mut flush: impl FnMut(Rectangle, &mut Band<'b, F, D>) -> Result<(), E>,
     ) -> Result<Flushed, E> {
         let shape = (band.size(), height);
         if changes.shape != shape {

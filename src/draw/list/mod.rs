@@ -6,9 +6,11 @@ mod display_list;
 mod entries;
 mod extent;
 mod index;
+mod memory;
 mod record;
 mod style;
 
 pub use capacity::CapacityError;
 pub use changes::{Changes, Flushed};
 pub use display_list::DisplayList;
+pub use memory::ListMemory;

@@ -8,7 +8,7 @@
 //! transformed, each into a *slot*, a place in the list's array of vertices. Those that turn out to be used are kept and lit.
 //! After the last triangle the slots of the others are freed.
 
-use super::capacity::Full;
+use super::capacity::CapacityError;
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::style::Style;
 use crate::frame::Window;
@@ -39,6 +39,9 @@ struct Recorder<'l, 'm> {
     is_any_cut_off: bool,
     /// The final slot of the next vertex that is kept.
     next: u16,
+    /// How many vertices and triangles found no room. They are counted to the end, so that the error can say what was
+    /// needed.
+    missing: [usize; 2],
 }
 
 /// Appends what is in view of a mesh to a list, whose lengths the caller restores after an error. Returns whether all colours
@@ -51,7 +54,7 @@ pub(crate) fn record(
     projection: &Projection,
     style: &Style<'_>,
     stats: &mut impl Count,
-) -> Result<bool, Full> {
+) -> Result<bool, CapacityError> {
     stats.count(|stats| &mut stats.meshes);
     let window = Window::LARGEST.within(&projection.viewport);
     let to_clip = ToClip::new(projection, camera, pose);
@@ -66,7 +69,7 @@ pub(crate) fn record(
     };
     let count = usize::from(last - first) + 1;
     if start + count > most {
-        return Err(Full::Vertices);
+        return Err(CapacityError::Vertices { capacity: most, needed: start + count });
     }
     let to_slot = start.wrapping_sub(first.into());
     let own = start..start + count;
@@ -83,9 +86,11 @@ pub(crate) fn record(
         own,
         is_any_cut_off: false,
         next: start as u16,
+        missing: [0; 2],
     };
     recorder.place(first, stats);
-    recorder.add_triangles(stats)?;
+    recorder.add_triangles(stats);
+    recorder.fits()?;
     Ok(recorder.move_together(first, first_triangle))
 }
 
@@ -132,7 +137,7 @@ impl Recorder<'_, '_> {
 
     /// Culls, clips and records the mesh's triangles.
     #[inline(never)]
-    fn add_triangles(&mut self, stats: &mut impl Count) -> Result<(), Full> {
+    fn add_triangles(&mut self, stats: &mut impl Count) {
         let is_faceted = self.style.coloring.is_faceted();
         let cut_off = i32::from(CUT_OFF.to_bits());
         let mesh = self.mesh;
@@ -140,7 +145,7 @@ impl Recorder<'_, '_> {
             stats.count(|stats| &mut stats.triangles);
             let [a, b, c] = indices.map(|index| self.at(index));
             if self.is_any_cut_off && (a[0] == cut_off || b[0] == cut_off || c[0] == cut_off) {
-                self.add_cut(indices, stats)?;
+                self.add_cut(indices, stats);
                 continue;
             }
             let area = area([a, b, c]);
@@ -152,13 +157,12 @@ impl Recorder<'_, '_> {
                 continue;
             };
             if is_faceted {
-                self.add_faceted(indices, area, rows)?;
+                self.add_faceted(indices, area, rows);
             } else {
                 let corners = indices.map(|index| self.keep(index));
-                self.add(corners, area, rows)?;
+                self.add(corners, area, rows);
             }
         }
-        Ok(())
     }
 
     /// The first and the last row of a triangle in the viewport, in units of 4 rows (see [`ROWS_LOG2`]). `None` if no pixel
@@ -182,9 +186,30 @@ impl Recorder<'_, '_> {
     /// Records a triangle, from the slots and q of its corners. They are put in the order in which set-up takes them, once
     /// for all bands.
     #[inline(always)]
-    fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+    fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) {
         let corners = in_order(corners, area, |(_, q)| q.to_bits()).map(|(slot, _)| slot);
-        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
+        self.push_triangle(ListTriangle { corners, rows });
+    }
+
+    #[inline(always)]
+    fn push_triangle(&mut self, triangle: ListTriangle) {
+        if self.triangles.push(triangle).is_err() {
+            self.missing[1] += 1;
+        }
+    }
+
+    /// Whether all found room.
+    fn fits(&self) -> Result<(), CapacityError> {
+        let [vertices, triangles] = self.missing;
+        if vertices > 0 {
+            let capacity = self.vertices.len();
+            return Err(CapacityError::Vertices { capacity, needed: capacity + vertices });
+        }
+        if triangles > 0 {
+            let capacity = self.triangles.len();
+            return Err(CapacityError::Triangles { capacity, needed: capacity + triangles });
+        }
+        Ok(())
     }
 
     /// Keeps a vertex of the mesh; returns the slot that it will have at the end, and q. When it is kept for the first time
@@ -214,7 +239,7 @@ impl Recorder<'_, '_> {
 
     /// Records a triangle with flat shading. Its colours are its own, so its corners are too: they are appended.
     #[inline(never)]
-    fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) -> Result<(), Full> {
+    fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) {
         let mut corners = [(0, U1F31::ZERO); 3];
         let light = self.style.coloring.on_face(indices.map(|index| self.mesh.vertex(index)));
         for (corner, index) in corners.iter_mut().zip(indices) {
@@ -229,16 +254,16 @@ impl Recorder<'_, '_> {
             if let Some(light) = light {
                 dim(&mut vertex.color, light);
             }
-            *corner = (self.push(&vertex)?, vertex.q);
+            *corner = (self.push(&vertex), vertex.q);
         }
-        self.add(corners, area, rows)
+        self.add(corners, area, rows);
     }
 
     /// Clips a triangle and records its pieces, a fan around the polygon's first corner. Pieces share the corners that they
     /// append.
     #[cold]
     #[inline(never)]
-    fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) -> Result<(), Full> {
+    fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
@@ -266,61 +291,59 @@ impl Recorder<'_, '_> {
             for (corner, i) in corners.iter_mut().zip(fan) {
                 *corner = match slots[i] {
                     Some(slot) => slot,
-                    None => self.push(&polygon[i])?,
+                    None => self.push(&polygon[i]),
                 };
                 slots[i] = Some(*corner);
             }
             let [a, b, c] = [0, 1, 2].map(|i| (corners[i], polygon[fan[i]].q));
-            self.add([a, b, c], area, rows)?;
+            self.add([a, b, c], area, rows);
         }
-        Ok(())
     }
 
     /// A polygon that is folded: all its corners, one after the other.
     #[cold]
     #[inline(never)]
-    fn add_folded(&mut self, polygon: &[ScreenVertex], stats: &mut impl Count) -> Result<(), Full> {
+    fn add_folded(&mut self, polygon: &[ScreenVertex], stats: &mut impl Count) {
         let rows = rows_of_folded(polygon, &self.window);
         if rows.is_empty() {
             stats.count(|stats| &mut stats.out_of_sight);
-            return Ok(());
+            return;
         }
         stats.count(|stats| &mut stats.drawn);
         let mut ends = [None, None];
         for corner in polygon {
-            let slot = self.push(corner)?;
+            let slot = self.push(corner);
             ends = [ends[0].or(Some(slot)), Some(slot)];
         }
         let [first, last] = ends.map(Option::unwrap_or_default);
         let rows = [rows.start, rows.end - 1].map(|row| (row >> ROWS_LOG2) as u8);
         let corners = [first, first, last];
-        self.triangles.push(ListTriangle { corners, rows }).map_err(|_| Full::Triangles)
+        self.push_triangle(ListTriangle { corners, rows });
     }
 
     /// Appends a corner that clipping or flat shading made. Returns its slot, which [`Recorder::move_together`] will shift down.
-    fn push(&mut self, at: &ScreenVertex) -> Result<u16, Full> {
+    fn push(&mut self, at: &ScreenVertex) -> u16 {
         let slot = self.vertices.len();
         let uv = ListVertex::attributes_of([at.u, at.v]);
         let [red, green, blue] = at.color.map(U8F8::to_bits);
         let vertex = ListVertex::new(at);
         match self.style.inputs {
-            Inputs::Uv => self.push_slot(ListVertex { attributes: uv, ..vertex })?,
+            Inputs::Uv => self.push_slot(ListVertex { attributes: uv, ..vertex }),
             inputs => self.push_slot(ListVertex {
                 attributes: [red, green, blue, if inputs == Inputs::UvColor { IN_NEXT } else { 0 }],
                 ..vertex
-            })?,
+            }),
         }
         if self.style.inputs == Inputs::UvColor {
-            self.push_slot(ListVertex { x: CUT_OFF, attributes: uv, ..ListVertex::default() })?;
+            self.push_slot(ListVertex { x: CUT_OFF, attributes: uv, ..ListVertex::default() });
         }
-        Ok(slot as u16)
+        slot as u16
     }
 
-    fn push_slot(&mut self, slot: ListVertex) -> Result<(), Full> {
-        if self.vertices.len() >= MOST_SLOTS {
-            return Err(Full::Vertices);
+    fn push_slot(&mut self, slot: ListVertex) {
+        if self.vertices.len() >= MOST_SLOTS || self.vertices.push(slot).is_err() {
+            self.missing[0] += 1;
         }
-        self.vertices.push(slot).map_err(|_| Full::Vertices)
     }
 
     /// Compacts the kept vertices of the mesh, in the order in which they were kept. They also get what is still missing: u

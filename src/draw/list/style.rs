@@ -1,23 +1,30 @@
-//! What a shader wants of the vertices and triangles of a mesh that is recorded.
+//! What a surface wants of the vertices and triangles of a mesh that is recorded.
 
-use crate::frame::PixelFormat;
-use crate::geometry::{Coloring, Cull, Inputs};
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::geometry::{Cull, Inputs, VertexColors};
 use crate::math::Pose;
-use crate::shade::Shader;
+use crate::scene::Lights;
+use crate::shade::Surface;
 
-/// What a shader wants of the vertices and triangles.
+/// What a surface wants of the vertices and triangles.
 pub(crate) struct Style<'p> {
     pub(crate) cull: Cull,
     pub(crate) inputs: Inputs,
-    pub(super) coloring: Coloring<'p>,
+    pub(super) coloring: VertexColors<'p>,
 }
 
 impl<'p> Style<'p> {
     /// Not inlined, so that its stack frame is gone while a mesh is recorded.
     #[inline(never)]
-    pub(crate) fn new<F: PixelFormat, S: Shader<F>>(shader: &S, camera: &Pose, pose: &'p Pose) -> Self {
-        let cull = shader.cull().of_mesh(camera.is_mirrored() != pose.is_mirrored());
-        Self { cull, inputs: shader.inputs(), coloring: shader.coloring(pose) }
+    pub(crate) fn new<F: PixelFormat, D: DepthFormat>(
+        surface: &Surface<'_, F, D>,
+        camera: &Pose,
+        pose: &'p Pose,
+        lights: Option<&Lights<'_>>,
+    ) -> Self {
+        let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
+        let (coloring, _) = surface.coloring.colors(lights, pose);
+        Self { cull, inputs: surface.look.traits.inputs, coloring }
     }
 
     pub(super) fn has_color(&self) -> bool {

@@ -1,0 +1,45 @@
+//! The memory of a display list: plain data, which outlives the frames that are recorded in it.
+
+use super::entries::{ListTriangle, ListVertex, MOST_SLOTS};
+use core::fmt;
+use heapless::Vec;
+
+/// Memory for a [`DisplayList`](super::DisplayList) of at most `V` vertices and `T` triangles, of up to 65535 each.
+///
+/// It borrows nothing, so it can stand in a `static`, from where `static_cell::ConstStaticCell` or the like hands it out.
+/// A vertex takes 16 bytes and a triangle 10.
+///
+/// ```
+/// use fixel::ListMemory;
+/// static MEMORY: ListMemory<546, 429> = ListMemory::new();
+/// assert_eq!(size_of_val(&MEMORY), ListMemory::<546, 429>::BYTES);
+/// ```
+pub struct ListMemory<const V: usize, const T: usize> {
+    pub(super) vertices: Vec<ListVertex, V>,
+    pub(super) triangles: Vec<ListTriangle, T>,
+    pub(super) index: Vec<u16, T>,
+}
+
+impl<const V: usize, const T: usize> ListMemory<V, T> {
+    /// How many bytes it takes.
+    pub const BYTES: usize = size_of::<Self>();
+
+    /// Memory that holds nothing. Nothing but its lengths is written.
+    #[must_use]
+    pub const fn new() -> Self {
+        const { assert!(V <= MOST_SLOTS && T <= MOST_SLOTS, "a list has at most 65535 vertices and triangles") };
+        Self { vertices: Vec::new(), triangles: Vec::new(), index: Vec::new() }
+    }
+}
+
+impl<const V: usize, const T: usize> Default for ListMemory<V, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const V: usize, const T: usize> fmt::Debug for ListMemory<V, T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ListMemory").field("vertices", &V).field("triangles", &T).finish()
+    }
+}

@@ -1,0 +1,22 @@
+//! A material's recipe: the numbers that its loops read.
+
+use crate::scene::Texture;
+
+/// What the loops of a material read. A display list keeps it by value.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe<'a> {
+    /// Of one texel where there is none.
+    pub(crate) texture: Texture<'a>,
+    /// RGB565.
+    pub(crate) color: u16,
+    /// Texture coordinates are multiplied by 2^this, 0 … 8.
+    pub(crate) scale_log2: u8,
+}
+
+impl Recipe<'_> {
+    /// Without a texture.
+    pub(crate) const fn plain(color: u16) -> Self {
+        Self { texture: Texture::new(&[0], 0, 0), color, scale_log2: 0 }
+    }
+}

@@ -1,0 +1,142 @@
+//! Surfaces: materials and shaders, their types forgotten.
+//!
+//! - In: a material, of which the recipe is kept by value; or a shader of the user, by reference.
+//! - Out: what geometry and set-up have to know of it, and a painter for the triangles that are set up.
+//! - Assumes: nothing.
+//!
+//! A mesh is drawn by one copy of the code before the pixels, whatever its surface. What a type says beyond that, which loops
+//! fill its pixels, stands in a function that is called once a triangle.
+
+use super::cover::Cover;
+use super::kinds::Kind;
+use super::material::Material;
+use super::quality::Quality;
+use super::recipe::Recipe;
+use super::shader::Shader;
+use super::traits::Traits;
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::geometry::{Coloring, Cull};
+use core::fmt;
+
+/// What a mesh is drawn with: a [`Material`], or a [`Shader`] of yours.
+///
+/// A material turns into one by itself where it is drawn with (`&material`), and is copied. A shader is kept
+/// [by reference](Surface::new). A surface is a value, and forgets its type: an array can hold surfaces of different kinds.
+///
+/// ```
+/// use fixel::embedded_graphics::pixelcolor::{Rgb565, prelude::*};
+/// use fixel::{Depth16, Material, Surface};
+/// let surfaces: [Surface<Rgb565, Depth16>; 2] =
+///     [(&Material::flat(Rgb565::CSS_GOLD)).into(), (&Material::gouraud().exact()).into()];
+/// # let _ = surfaces;
+/// ```
+pub struct Surface<'a, F: PixelFormat, D: DepthFormat> {
+    pub(crate) cull: Cull,
+    pub(crate) coloring: Coloring,
+    pub(crate) look: Look<'a, F, D>,
+}
+
+/// What of a surface is needed after its vertices were coloured.
+pub(crate) struct Look<'a, F: PixelFormat, D: DepthFormat> {
+    pub(crate) traits: Traits,
+    painter: Painter<'a, F, D>,
+}
+
+enum Painter<'a, F: PixelFormat, D: DepthFormat> {
+    Material(Recipe<'a>, fn(&Recipe<'_>, &mut Cover<'_, F, D>)),
+    Shader(&'a (dyn Paint<F, D> + Sync)),
+}
+
+/// A shader whose type is forgotten.
+trait Paint<F: PixelFormat, D: DepthFormat> {
+    fn paint_cover(&self, cover: &mut Cover<'_, F, D>);
+}
+
+impl<F: PixelFormat, D: DepthFormat, S: Shader<F>> Paint<F, D> for S {
+    fn paint_cover(&self, cover: &mut Cover<'_, F, D>) {
+        self.paint(cover);
+    }
+}
+
+fn paint_material<F: PixelFormat, D: DepthFormat, K: Kind, Q: Quality>(
+    recipe: &Recipe<'_>,
+    cover: &mut Cover<'_, F, D>,
+) {
+    K::paint::<F, Q, _>(recipe, cover);
+}
+
+impl<'a, F: PixelFormat, D: DepthFormat> Surface<'a, F, D> {
+    /// That of a shader, which stays borrowed. It may be shared with the other core of a chip (`Sync`).
+    #[must_use]
+    pub fn new<S: Shader<F> + Sync>(shader: &'a S) -> Self {
+        Self::painted(shader, Painter::Shader(shader))
+    }
+
+    fn painted<S: Shader<F>>(shader: &S, painter: Painter<'a, F, D>) -> Self {
+        Self {
+            cull: shader.cull(),
+            coloring: shader.coloring(),
+            look: Look { traits: Traits::of(shader), painter },
+        }
+    }
+}
+
+impl<'a, F: PixelFormat, D: DepthFormat, K: Kind, Q: Quality> From<&Material<'a, K, Q>>
+    for Surface<'a, F, D>
+{
+    fn from(material: &Material<'a, K, Q>) -> Self {
+        Self::painted(material, Painter::Material(material.recipe, paint_material::<F, D, K, Q>))
+    }
+}
+
+impl<'a, F: PixelFormat, D: DepthFormat> From<&Self> for Surface<'a, F, D> {
+    fn from(surface: &Surface<'a, F, D>) -> Self {
+        *surface
+    }
+}
+
+impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
+    /// Whether pixels of both come out the same.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.traits == other.traits
+            && match (&self.painter, &other.painter) {
+                (Painter::Material(recipe, paint), Painter::Material(other, other_paint)) => {
+                    recipe == other && core::ptr::fn_addr_eq(*paint, *other_paint)
+                }
+                (Painter::Shader(shader), Painter::Shader(other)) => core::ptr::eq(*shader, *other),
+                _ => false,
+            }
+    }
+
+    /// Draws a triangle that is set up.
+    #[inline]
+    pub(crate) fn paint(&self, cover: &mut Cover<'_, F, D>) {
+        match &self.painter {
+            Painter::Material(recipe, paint) => paint(recipe, cover),
+            Painter::Shader(shader) => shader.paint_cover(cover),
+        }
+    }
+}
+
+macro_rules! by_value {
+    ($($type:ident),*) => {$(
+        impl<F: PixelFormat, D: DepthFormat> Clone for $type<'_, F, D> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
+
+        impl<F: PixelFormat, D: DepthFormat> Copy for $type<'_, F, D> {}
+    )*};
+}
+
+by_value!(Surface, Look, Painter);
+
+impl<F: PixelFormat, D: DepthFormat> fmt::Debug for Surface<'_, F, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Surface")
+            .field("inputs", &self.look.traits.inputs)
+            .field("cull", &self.cull)
+            .finish_non_exhaustive()
+    }
+}

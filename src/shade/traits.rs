@@ -1,0 +1,55 @@
+//! What set-up has to know of a shader.
+//!
+//! - In: a shader, its type forgotten afterwards.
+//! - Out: what set-up needs for its triangles.
+//! - Assumes: nothing.
+
+use super::quality::Quality;
+use super::shader::Shader;
+use crate::frame::PixelFormat;
+use crate::geometry::Inputs;
+use crate::raster::{Needs, Packing, Straight};
+
+/// What set-up has to know of a shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Traits {
+    pub(crate) inputs: Inputs,
+    straight: Straight,
+    every_pixel: bool,
+    has_small: bool,
+    scale_log2: u8,
+    packed_log2: Option<[u8; 2]>,
+}
+
+impl Traits {
+    pub(crate) fn of<F: PixelFormat, S: Shader<F>>(shader: &S) -> Self {
+        Self {
+            inputs: shader.inputs(),
+            straight: S::Quality::STRAIGHT,
+            every_pixel: S::Quality::EVERY_PIXEL,
+            has_small: shader.has_small(),
+            scale_log2: shader.texture_scale().min(8) as u8,
+            packed_log2: shader.packed_log2().map(|log2| log2.map(|log2| log2 as u8)),
+        }
+    }
+
+    /// What set-up has to do, with depth or without, before a camera that may be orthographic, and with colours that
+    /// may all be grey.
+    #[inline(never)]
+    pub(crate) fn needs(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
+        let scale_log2 = self.scale_log2.into();
+        let packing = Packing::new(self.packed_log2.map(|log2| log2.map(u32::from)), scale_log2, self.inputs);
+        Needs {
+            inputs: self.inputs,
+            straight: if is_orthographic { Straight::Always } else { self.straight },
+            every_pixel: self.every_pixel,
+            finer: [0; 2],
+            // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
+            scale_log2: [scale_log2, core::hint::black_box(scale_log2)],
+            packings: [packing; 2],
+            small: self.has_small,
+            depth,
+            gray: is_gray,
+        }
+    }
+}
