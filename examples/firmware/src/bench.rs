@@ -5,10 +5,7 @@
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::prelude::*;
-use fixel::{
-    Light, Lights, Textured,
-    shapes::{self, Shape},
-};
+use fixel::shapes::{self, Shape};
 
 /// Width and height of every scene.
 pub const SIZE: Size = Size::new(160, 120);
@@ -143,31 +140,31 @@ pub const fn floor_pose(roll: Turn) -> Pose {
 /// s1: the floor, turned about the view axis.
 #[inline(always)]
 pub fn s1(roll: Turn, frame: &mut Flat<'_>) {
-    CAMERA.draw(&FLOOR, &floor_pose(roll), &Textured::new(&WALL), frame);
+    CAMERA.draw(&FLOOR, &floor_pose(roll), &Material::textured(&WALL), frame);
 }
 
 /// s1_ground: the ground of a game, clipped by the near plane and beyond every edge of the screen.
 #[inline(always)]
 pub fn s1_ground(frame: &mut Flat<'_>) {
-    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Textured::new(&WALL), frame);
+    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Material::textured(&WALL), frame);
 }
 
 /// s2: the cube.
 #[inline(always)]
 pub fn s2(frame: &mut Deep<'_>) {
-    CAMERA.draw(&CUBE, &S2, &Textured::new(&WALL), frame);
+    CAMERA.draw(&CUBE, &S2, &Material::textured(&WALL), frame);
 }
 
 /// s3: the torus, Gouraud shaded.
 #[inline(always)]
 pub fn s3(frame: &mut Deep<'_>) {
-    CAMERA.draw(&TORUS_MESH, &S3, &Material::gouraud().lit(&LIGHTS), frame);
+    CAMERA.lit_by(&LIGHTS).draw(&TORUS_MESH, &S3, &Material::gouraud().lit(), frame);
 }
 
 /// s3_tex: the same, its light on a texture.
 #[inline(always)]
 pub fn s3_tex(frame: &mut Deep<'_>) {
-    CAMERA.draw(&TEXTURED_TORUS_MESH, &S3, &Material::textured(&WALL).lit(&LIGHTS), frame);
+    CAMERA.lit_by(&LIGHTS).draw(&TEXTURED_TORUS_MESH, &S3, &Material::textured(&WALL).lit(), frame);
 }
 
 /// Pixels that s1 covers.

@@ -3,17 +3,25 @@
 
 use crate::bench::{CAMERA, Flat, LIGHTS, WALL};
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
-use fixel::{DepthFormat, Quality, num::I12F4, prelude::*};
+use fixel::material::Kind;
+use fixel::{Affine, DepthFormat, Exact, Quality, QuarterPixel, Surface, num::I12F4, prelude::*};
 
 /// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
-fn material(surface: u32) -> Material<'static> {
-    match surface {
-        0 => Material::flat(Rgb565::CSS_TOMATO),
-        1 => Material::gouraud(),
-        2 => Material::textured(&WALL),
-        3 => Material::clamped(&WALL),
-        4 => Material::textured(&WALL).lit(&LIGHTS),
-        _ => Material::gouraud().lit(&LIGHTS),
+/// Sides turned to where `cull` says are left out.
+fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'static, Rgb565, D> {
+    fn of<D: DepthFormat, Q: Quality>(
+        material: Material<'static, impl Kind>,
+        cull: Cull,
+    ) -> Surface<'static, Rgb565, D> {
+        (&material.quality::<Q>().cull(cull)).into()
+    }
+    match number {
+        0 => of::<D, Q>(Material::flat(Rgb565::CSS_TOMATO), cull),
+        1 => of::<D, Q>(Material::gouraud(), cull),
+        2 => of::<D, Q>(Material::textured(&WALL), cull),
+        3 => of::<D, Q>(Material::clamped(&WALL), cull),
+        4 => of::<D, Q>(Material::textured(&WALL).lit(), cull),
+        _ => of::<D, Q>(Material::gouraud().lit(), cull),
     }
 }
 
@@ -65,19 +73,11 @@ pub const fn size(shape: u32) -> Size {
 /// many rows.
 #[inline(always)]
 pub fn rectangle<D: DepthFormat>(surface: u32, quality: u32, shape: u32, frame: &mut Band<'_, Rgb565, D>) {
-    let material = material(surface);
-    match quality {
-        0 => rectangle_of(&material.affine(), shape, frame),
-        1 => rectangle_of(&material, shape, frame),
-        _ => rectangle_of(&material.exact(), shape, frame),
-    }
-}
-
-fn rectangle_of<D: DepthFormat, Q: Quality>(
-    material: &Material<'_, Q>,
-    shape: u32,
-    frame: &mut Band<'_, Rgb565, D>,
-) {
+    let surface = match quality {
+        0 => self::surface::<D, Affine>(surface, Cull::Back),
+        1 => self::surface::<D, QuarterPixel>(surface, Cull::Back),
+        _ => self::surface::<D, Exact>(surface, Cull::Back),
+    };
     let mesh = match shape >> 2 & 3 {
         0 => STRAIGHT,
         1 => FLOOR,
@@ -88,7 +88,7 @@ fn rectangle_of<D: DepthFormat, Q: Quality>(
     let middle = I12F4::from_num(64 - size.width as i16 / 2 - left);
     let camera = Camera::focal(80.0, size).near(0.1).viewport(Point::new(16 + i32::from(left), 24));
     let camera = camera.off_axis(middle, I12F4::ZERO);
-    camera.draw(&mesh, &Pose::IDENTITY, material, frame);
+    camera.lit_by(&LIGHTS).draw(&mesh, &Pose::IDENTITY, surface, frame);
 }
 
 /// A triangle of one pixel, and one of 6 rows with 21 pixels: neither is seen straight on.
@@ -151,7 +151,8 @@ fn of_kind(kind: u32, many: u32) -> Option<(&'static Mesh<'static>, Pose, Cull)>
 #[inline(always)]
 pub fn triangles(kind: u32, many: u32, surface: u32, frame: &mut Flat<'_>) {
     if let Some((mesh, pose, cull)) = of_kind(kind, many) {
-        CAMERA.draw(mesh, &pose, &material(surface).cull(cull), frame);
+        let surface = self::surface::<_, QuarterPixel>(surface, cull);
+        CAMERA.lit_by(&LIGHTS).draw(mesh, &pose, surface, frame);
     }
 }
 
@@ -195,7 +196,7 @@ mod tests {
                 let mut frame = Flat::new(SIZE, &mut pixels, &mut no_depth).expect("the size fits");
                 let (mesh, pose, cull) = of_kind(kind, many).expect("the kind draws");
                 let mut stats = Stats::default();
-                CAMERA.draw_counted(mesh, &pose, &material(1).cull(cull), &mut frame, &mut stats);
+                CAMERA.draw_counted(mesh, &pose, &Material::gouraud().cull(cull), &mut frame, &mut stats);
                 // How often a shared vertex is transformed is the library's own affair.
                 assert_eq!(Stats { transformed: 0, ..stats }, expected, "kind {kind}");
                 assert_eq!(pixels.iter().filter(|&&pixel| pixel != 0).count(), covered, "kind {kind}");

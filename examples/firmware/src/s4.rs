@@ -11,7 +11,7 @@ use embedded_graphics::{
     text::{Baseline, Text},
 };
 use fixel::prelude::*;
-use fixel::{CapacityError, Gradient};
+use fixel::{CapacityError, Gradient, Surface};
 
 use crate::bench::{CUBE, Deep, GROUND, GROUND_POSE, LIGHTS, TEXELS, TEXTURED_TORUS_MESH, WALL};
 
@@ -26,14 +26,17 @@ const CAMERA: Camera = Camera::focal(120.0, SIZE)
     .pose(Pose::IDENTITY.rotated_x(Turn::from_raw(1784u16.wrapping_neg())));
 
 /// A mesh, where it stands, and its surface.
-struct Thing(&'static Mesh<'static>, Pose, Material<'static>);
+struct Thing(&'static Mesh<'static>, Pose, Surface<'static, Rgb565, Depth16>);
 
 /// The torus is first: while a mesh goes into a list there has to be room for all its vertices, and half of them stay.
-static THINGS: [Thing; 3] = [
-    Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, Material::textured(&WALL).lit(&LIGHTS)),
-    Thing(&CUBE, CUBE_POSE, Material::textured(&WALL)),
-    Thing(&GROUND, GROUND_POSE, Material::textured(&PAVING)),
-];
+fn things() -> [Thing; DRAWS] {
+    [
+        Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, (&Material::textured(&WALL).lit()).into()),
+        Thing(&CUBE, CUBE_POSE, (&Material::textured(&WALL)).into()),
+        Thing(&GROUND, GROUND_POSE, (&Material::textured(&PAVING)).into()),
+    ]
+}
+
 /// The wall's bricks as slabs of stone.
 static SLABS: [u16; 4096] = slabs();
 static PAVING: Texture = Texture::new(&SLABS, 6, 6);
@@ -70,9 +73,12 @@ const CAPTION_AREA: Rectangle =
 
 const VERTICES: usize = 546;
 const TRIANGLES: usize = 429;
+const DRAWS: usize = 3;
 
 /// Room for what is seen, and for all of the torus while it goes in.
-pub type List = DisplayList<'static, VERTICES, TRIANGLES, { THINGS.len() }>;
+pub type Memory = ListMemory<VERTICES, TRIANGLES>;
+/// The list on it.
+pub type List<'a> = DisplayList<'a, Rgb565, Depth16, DRAWS>;
 
 /// What is behind everything.
 #[must_use]
@@ -85,9 +91,10 @@ pub fn sky() -> Gradient {
 /// # Errors
 ///
 /// Never: the list has as much room as the scene takes.
-pub fn record(list: &mut List) -> Result<(), CapacityError> {
+pub fn record(list: &mut List<'_>) -> Result<(), CapacityError> {
     list.clear();
-    THINGS.iter().try_for_each(|Thing(mesh, pose, material)| CAMERA.draw(mesh, pose, material, list))
+    let view = CAMERA.lit_by(&LIGHTS);
+    things().iter().try_for_each(|Thing(mesh, pose, surface)| view.draw(mesh, pose, surface, list))
 }
 
 /// Draws the listed scene from the top down, as many rows at a time as the band has, and hands them to `show`.
@@ -96,7 +103,7 @@ pub fn record(list: &mut List) -> Result<(), CapacityError> {
 ///
 /// The first of `show`; the rest is not drawn then.
 pub fn render<E>(
-    list: &List,
+    list: &List<'_>,
     band: &mut Deep<'_>,
     mut show: impl FnMut(&Deep<'_>) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -109,8 +116,8 @@ pub fn render<E>(
 /// Draws the same without a list, at once, into a frame of the whole screen.
 pub fn draw(frame: &mut Deep<'_>) {
     frame.clear_to(&sky());
-    for Thing(mesh, pose, material) in &THINGS {
-        CAMERA.draw(mesh, pose, material, frame);
+    for Thing(mesh, pose, surface) in &things() {
+        CAMERA.lit_by(&LIGHTS).draw(mesh, pose, surface, frame);
     }
     write(frame);
 }
@@ -133,7 +140,8 @@ mod tests {
         let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
         let mut whole = Deep::new(SIZE, &mut pixels, &mut depth).expect("the slices hold it");
         draw(&mut whole);
-        let mut list = List::new();
+        let mut memory = Memory::new();
+        let mut list = List::new(&mut memory);
         record(&mut list).expect("the list holds the scene");
         for rows in [1, 2, 7, 8, 16, 64, SIZE.height] {
             let count = (SIZE.width * rows) as usize;
@@ -151,11 +159,13 @@ mod tests {
 
     #[test]
     fn the_list_has_no_more_room_than_the_scene_takes() {
-        let mut list = List::new();
+        let mut memory = Memory::new();
+        let mut list = List::new(&mut memory);
         record(&mut list).expect("the list holds the scene");
         let [vertices, triangles, draws] = list.lengths();
-        println!("s4: {vertices} vertices, {triangles} triangles, {draws} draws in {} bytes", List::bytes());
-        assert_eq!([triangles, draws], [TRIANGLES, THINGS.len()]);
+        let bytes = Memory::BYTES + List::BYTES;
+        println!("s4: {vertices} vertices, {triangles} triangles, {draws} draws in {bytes} bytes");
+        assert_eq!([triangles, draws], [TRIANGLES, DRAWS]);
         // All of the torus, while it goes in.
         assert_eq!(TEXTURED_TORUS_MESH.vertices().len(), VERTICES);
     }

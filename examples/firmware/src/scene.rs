@@ -8,8 +8,9 @@ use embedded_graphics::{
     prelude::*,
     text::Text,
 };
-use fixel::CapacityError;
+use fixel::material::{Gouraud, Textured};
 use fixel::prelude::*;
+use fixel::{CapacityError, Surface};
 
 use crate::{
     checksum::{Gray4Sum, Rgb565Sum},
@@ -33,9 +34,9 @@ static SHADES: [[u16; 1024]; 3] = [BRICK, shade(&BRICK, 6), shade(&BRICK, 4)];
 static TEXTURES: [Texture; 3] =
     [Texture::new(&SHADES[0], 5, 5), Texture::new(&SHADES[1], 5, 5), Texture::new(&SHADES[2], 5, 5)];
 
-static BRICKS: [Material; 3] =
+static BRICKS: [Material<Textured>; 3] =
     [Material::textured(&TEXTURES[0]), Material::textured(&TEXTURES[1]), Material::textured(&TEXTURES[2])];
-static GRASS: Material = Material::gouraud();
+static GRASS: Material<Gouraud> = Material::gouraud();
 
 /// Darkens each channel to `eighths` of what it is, at compile time.
 const fn shade(texels: &[u16; 1024], eighths: u16) -> [u16; 1024] {
@@ -82,10 +83,12 @@ const CAPTION: MonoTextStyle<'static, Rgb565> = MonoTextStyle::new(&FONT_4X6, Rg
 pub type Strip<'a> = Band<'a, Rgb565, Depth16>;
 
 /// Room for any frame.
-pub type List = DisplayList<'static, 24, 12, 4>;
+pub type Memory = ListMemory<24, 12>;
+/// The list on it.
+pub type List<'a> = DisplayList<'a, Rgb565, Depth16, 4>;
 
 /// A mesh, where it stands, and its surface.
-type Thing = (&'static Mesh<'static>, Pose, &'static Material<'static>);
+type Thing = (&'static Mesh<'static>, Pose, Surface<'static, Rgb565, Depth16>);
 
 /// What there is to draw in a frame.
 fn things(frame: u32) -> [Thing; 4] {
@@ -95,10 +98,10 @@ fn things(frame: u32) -> [Thing; 4] {
     let quarter = Turn::from_degrees(90);
     let faces = |pose: Pose| pose.rotated_y(turn).rotated_x(Turn::from_degrees(12));
     [
-        (&FLOOR, floor, &GRASS),
-        (&FACES, faces(Pose::IDENTITY.rotated_x(quarter)), &BRICKS[0]),
-        (&FACES, faces(Pose::IDENTITY), &BRICKS[1]),
-        (&FACES, faces(Pose::IDENTITY.rotated_y(quarter)), &BRICKS[2]),
+        (&FLOOR, floor, (&GRASS).into()),
+        (&FACES, faces(Pose::IDENTITY.rotated_x(quarter)), (&BRICKS[0]).into()),
+        (&FACES, faces(Pose::IDENTITY), (&BRICKS[1]).into()),
+        (&FACES, faces(Pose::IDENTITY.rotated_y(quarter)), (&BRICKS[2]).into()),
     ]
 }
 
@@ -127,8 +130,8 @@ impl Scene {
     /// Draws the rows of frame `frame` that the strip holds.
     pub fn draw(&self, frame: u32, strip: &mut Strip<'_>) {
         let Ok(()) = strip.clear(SKY);
-        for (mesh, pose, material) in things(frame) {
-            self.camera.draw(mesh, &pose, material, strip);
+        for (mesh, pose, surface) in things(frame) {
+            self.camera.draw(mesh, &pose, surface, strip);
         }
         write(strip);
     }
@@ -139,10 +142,15 @@ impl Scene {
     /// # Errors
     ///
     /// Never: the list has room for any frame.
-    pub fn listed(&self, frame: u32, list: &mut List, strip: &mut Strip<'_>) -> Result<u32, CapacityError> {
+    pub fn listed(
+        &self,
+        frame: u32,
+        list: &mut List<'_>,
+        strip: &mut Strip<'_>,
+    ) -> Result<u32, CapacityError> {
         list.clear();
-        for (mesh, pose, material) in things(frame) {
-            self.camera.draw(mesh, &pose, material, list)?;
+        for (mesh, pose, surface) in things(frame) {
+            self.camera.draw(mesh, &pose, surface, list)?;
         }
         let mut sum = Rgb565Sum::new();
         let Ok(()) = list.render_bands(self.size.height, &SKY, strip, |_, strip| {
@@ -239,7 +247,8 @@ mod tests {
     #[test]
     fn a_list_shows_the_frame_that_is_drawn_at_once() {
         let scene = Scene::new(MICROBIT);
-        let mut list = List::new();
+        let mut memory = Memory::new();
+        let mut list = List::new(&mut memory);
         let mut most = [0; 3];
         for rows in [1, 7, 16, 128] {
             let count = (MICROBIT.width * rows) as usize;
@@ -252,7 +261,8 @@ mod tests {
                 most = core::array::from_fn(|i| most[i].max(list.lengths()[i]));
             }
         }
-        println!("{most:?} vertices, triangles and draws at most, in {} bytes", List::bytes());
+        let bytes = Memory::BYTES + List::BYTES;
+        println!("{most:?} vertices, triangles and draws at most, in {bytes} bytes");
     }
 
     #[test]

@@ -5,11 +5,11 @@
 #[path = "../screen.rs"]
 mod screen;
 
-use fixel::{Textured, Turn};
+use fixel::{Material, Turn};
 use fixel_firmware::cube::{BRICK, CAMERA, CUBE, Screen, pose};
 
 fn draw(turn: Turn, screen: &mut Screen<'_>) {
-    let material = Textured::new(&BRICK);
+    let material = Material::textured(&BRICK);
     CAMERA.draw(&CUBE, &pose(turn), &material, screen);
 }
 

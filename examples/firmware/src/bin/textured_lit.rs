@@ -9,8 +9,8 @@ use fixel::prelude::*;
 use fixel_firmware::cube::{BRICK, CAMERA, CUBE, LIGHTS, Screen, pose};
 
 fn draw(turn: Turn, screen: &mut Screen<'_>) {
-    let material = Material::textured(&BRICK).lit(&LIGHTS);
-    CAMERA.draw(&CUBE, &pose(turn), &material, screen);
+    let material = Material::textured(&BRICK).lit();
+    CAMERA.lit_by(&LIGHTS).draw(&CUBE, &pose(turn), &material, screen);
 }
 
 #[cfg(not(target_os = "none"))]

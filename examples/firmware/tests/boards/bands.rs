@@ -9,7 +9,7 @@ use embedded_graphics::{
 use fixel_firmware::{
     bench::Deep,
     checksum::Rgb565Sum,
-    s4::{self, List},
+    s4::{self, List, Memory},
 };
 use image::{Rgb, RgbImage};
 
@@ -92,8 +92,9 @@ fn the_bands_program_shows_a_whole_frame_in_little_ram() {
         };
         let band = u64::from(s4::SIZE.width) * rows * 2;
         assert_eq!([size("::COLORS"), size("::DEPTH")], [band; 2]);
-        assert!(size("::LIST") <= List::bytes() as u64);
-        assert_eq!(size("::COLORS") + size("::DEPTH") + size("::LIST"), statics);
+        assert!(size("::MEMORY") <= Memory::BYTES as u64);
+        assert!(size("::LIST") <= List::BYTES as u64);
+        assert_eq!(["::COLORS", "::DEPTH", "::MEMORY", "::LIST"].map(size).iter().sum::<u64>(), statics);
         let row = table().into_iter().find(|row| row.0 == rows).expect("the table has the height");
         assert_eq!(row.1, statics, "bytes of {rows} rows in bands.txt");
         assert!(statics + stack as u64 <= limit, "{statics} + {stack} bytes are more than {limit}");

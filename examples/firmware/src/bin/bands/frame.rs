@@ -15,7 +15,7 @@ const BAND: Size = Size::new(s4::SIZE.width, if cfg!(feature = "rows-8") { 8 } e
 pub(crate) const PIXELS: usize = (BAND.width * BAND.height) as usize;
 
 /// Draws the scene; returns the checksum of the whole screen's words.
-pub(crate) fn draw(pixels: &mut [u16; PIXELS], depth: &mut [u16; PIXELS], list: &mut List) -> u32 {
+pub(crate) fn draw(pixels: &mut [u16; PIXELS], depth: &mut [u16; PIXELS], list: &mut List<'_>) -> u32 {
     s4::record(list).expect("the list holds the scene");
     let mut band = Deep::new(BAND, pixels, depth).expect("the buffers hold it");
     let mut sum = Rgb565Sum::new();

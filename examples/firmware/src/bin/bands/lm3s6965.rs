@@ -1,7 +1,7 @@
-//! The program on the board: its RAM is these three buffers and the stack.
+//! The program on the board: its RAM is these buffers and the stack.
 
 use crate::frame::{self, PIXELS};
-use fixel_firmware::s4::List;
+use fixel_firmware::s4::{List, Memory};
 use semihosting::{experimental::env, println, process};
 
 #[cortex_m_rt::entry]
@@ -9,12 +9,14 @@ fn main() -> ! {
     // `entry` hands these out as `&mut`: it runs once.
     static mut COLORS: [u16; PIXELS] = [0; PIXELS];
     static mut DEPTH: [u16; PIXELS] = [0; PIXELS];
-    static mut LIST: List = List::new();
+    static mut MEMORY: Memory = Memory::new();
+    static mut LIST: Option<List<'static>> = None;
 
     let arguments = env::args::<64>().expect("the command line fits");
     let hold = (&arguments).into_iter().any(|argument| argument == Ok("hold"));
 
-    println!("s4 rgb565 {:08X}", frame::draw(COLORS, DEPTH, LIST));
+    let list = LIST.insert(List::new(MEMORY));
+    println!("s4 rgb565 {:08X}", frame::draw(COLORS, DEPTH, list));
     if hold {
         loop {
             cortex_m::asm::wfi();

@@ -31,6 +31,8 @@ mod mps2;
 #[cfg(not(target_os = "none"))]
 fn main() {
     let (mut pixels, mut depth) = ([0; frame::PIXELS], [0; frame::PIXELS]);
-    let rgb565 = frame::draw(&mut pixels, &mut depth, &mut fixel_firmware::s4::List::new());
+    let mut memory = fixel_firmware::s4::Memory::new();
+    let mut list = fixel_firmware::s4::List::new(&mut memory);
+    let rgb565 = frame::draw(&mut pixels, &mut depth, &mut list);
     println!("s4 rgb565 {rgb565:08X}");
 }

@@ -14,7 +14,7 @@ compile_error!(
 );
 
 use embedded_graphics::prelude::*;
-use fixel_firmware::scene::{BAND_ROWS, FRAMES, List, MICROBIT, Scene, Strip};
+use fixel_firmware::scene::{BAND_ROWS, FRAMES, List, MICROBIT, Memory, Scene, Strip};
 
 /// What is drawn at a time.
 const STRIP: Size = Size::new(MICROBIT.width, BAND_ROWS as u32);
@@ -26,7 +26,7 @@ fn main() -> ! {
     // `entry` hands these out as `&mut`: it runs once.
     static mut COLORS: [u16; PIXELS] = [0; PIXELS];
     static mut DEPTH: [u16; PIXELS] = [0; PIXELS];
-    static mut LIST: List = List::new();
+    static mut MEMORY: Memory = Memory::new();
 
     use semihosting::{experimental::env, println, process};
 
@@ -34,9 +34,10 @@ fn main() -> ! {
     let hold = (&arguments).into_iter().any(|argument| argument == Ok("hold"));
 
     let scene = Scene::new(MICROBIT);
+    let mut list = List::new(MEMORY);
     let mut strip = Strip::new(STRIP, COLORS, DEPTH).expect("the buffers hold it");
     for frame in 0..FRAMES {
-        let rgb565 = scene.listed(frame, LIST, &mut strip).expect("the list holds the scene");
+        let rgb565 = scene.listed(frame, &mut list, &mut strip).expect("the list holds the scene");
         println!("frame {frame} rgb565 {rgb565:08X}");
     }
     if hold {
@@ -50,7 +51,8 @@ fn main() -> ! {
 #[cfg(not(target_os = "none"))]
 fn main() {
     let (mut pixels, mut depth) = ([0; PIXELS], [0; PIXELS]);
-    let mut list = List::new();
+    let mut memory = Memory::new();
+    let mut list = List::new(&mut memory);
     let scene = Scene::new(MICROBIT);
     let mut strip = Strip::new(STRIP, &mut pixels, &mut depth).expect("the buffers hold it");
     for frame in 0..FRAMES {
