@@ -14,7 +14,7 @@ use std::fmt;
 use common::generate::GUARD_BAND;
 use common::perspective::{Case, FAMILIES, RATIOS, any_case, case, mesh_case};
 use common::{Canvas, Drawn, Record, Recorder, Recording, Strip, cases, for_all};
-use fixel::{Affine, Cull, Depth16, Exact, Inputs, Quality, QuarterPixel};
+use fixel::{Affine, Cull, Depth16, Exact, Inputs, Quality, QuarterPixel, Surface};
 use proptest::prelude::*;
 use reference::{ATTRIBUTES, Corner, Triangle, UNIT};
 
@@ -75,7 +75,7 @@ fn measure<Q: Quality>(case: &Case, promise: Promise) -> Result<Worst, String> {
     record.record::<Q>(triangle, Cull::None, *inputs);
     let mut stored = Canvas::<Drawn, u16>::new::<Depth16>(*strip);
     stored
-        .draw::<Recording, Depth16, _>(triangle, Cull::None, &Recorder::<Q>::new(*inputs))
+        .draw::<Recording, Depth16, _>(triangle, Cull::None, Surface::new(&Recorder::<Q>::new(*inputs)))
         .map_err(|error| format!("{error:?}"))?;
     let mut worst = Worst::default();
     for (((x, y), drawn, met), word) in record.iter().zip(&stored.depth) {

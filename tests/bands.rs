@@ -10,43 +10,43 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 
 use common::for_all;
-use common::scenes::{Draw, MATERIALS, TEXELS, draw, materials, scene};
+use common::scenes::{Draw, LIGHTS, Surfaces, TEXELS, draw, scene, surfaces};
 use fixel::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_4X6};
 use fixel::embedded_graphics::pixelcolor::{Rgb565, Rgb888};
 use fixel::embedded_graphics::prelude::*;
 use fixel::embedded_graphics::primitives::Rectangle;
 use fixel::embedded_graphics::text::Text;
 use fixel::{
-    Affine, Background, Band, BigEndian, Camera, CapacityError, Changes, Depth16, DepthFormat, DisplayList,
-    Exact, Flushed, Gradient, Material, Mesh, NoDepth, Picture, PixelFormat, Pose, Quality, QuarterPixel,
-    Texture, Turn, Vec3, Vertex,
+    Affine, Background, Band, BigEndian, Camera, CapacityError, Changes, Coloring, Depth16, DepthFormat,
+    DisplayList, Exact, Flushed, Gradient, Inputs, Light, Lights, ListMemory, Material, Mesh, NoDepth,
+    Picture, PixelFormat, Pose, Quality, QuarterPixel, Shader, Surface, Texture, Turn, Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
+use static_cell::ConstStaticCell;
 
+/// Memory for every scene here.
+type Memory = ListMemory<2000, 1000>;
 /// A list that holds every scene here.
-type Large<Q, F = Rgb565> = DisplayList<'static, 2000, 1000, 16, Material<'static, Q>, F>;
+type Large<'a, F, D> = DisplayList<'a, F, D, 16>;
 
-fn leaked<Q: Quality + 'static>() -> &'static [Material<'static, Q>; MATERIALS] {
-    Box::leak(Box::new(materials()))
-}
-
-fn listed<Q: Quality, F: PixelFormat>(
+fn listed<'a, F: PixelFormat, D: DepthFormat>(
+    memory: &'a mut Memory,
     screen: Size,
     draws: &[Draw],
-    materials: &'static [Material<'static, Q>; MATERIALS],
-) -> Large<Q, F> {
-    let mut list = Large::new();
+    surfaces: &Surfaces<F, D>,
+) -> Large<'a, F, D> {
+    let mut list = Large::new(memory);
     for draw in draws {
-        draw.add(screen, materials, &mut list).expect("the list is large");
+        draw.draw(screen, surfaces, &mut list).expect("the list is large");
     }
     list
 }
 
 /// Pixels and depths of the whole screen, drawn at once.
-fn at_once<Q: Quality, F, D>(
+fn at_once<F, D>(
     screen: Size,
     draws: &[Draw],
-    materials: &[Material<'static, Q>],
+    surfaces: &Surfaces<F, D>,
     background: &impl Background<F>,
 ) -> (Vec<F::Word>, Vec<D::Word>)
 where
@@ -58,17 +58,16 @@ where
     let mut band = Band::<F, D>::new(screen, &mut pixels, &mut depth).expect("the screen is small");
     band.clear_to(background);
     for draw in draws {
-        let mesh = &common::scenes::meshes()[draw.mesh];
-        draw.camera(screen).draw(mesh, &draw.pose, &materials[draw.material], &mut band);
+        draw.draw(screen, surfaces, &mut band);
     }
     (pixels, depth)
 }
 
 /// Pixels and depths of the whole screen, band by band.
-fn in_bands<Q: Quality, F, D>(
+fn in_bands<F, D, const N: usize>(
     screen: Size,
     rows: u32,
-    list: &Large<Q, F>,
+    list: &DisplayList<'_, F, D, N>,
     background: &impl Background<F>,
 ) -> (Vec<F::Word>, Vec<D::Word>)
 where
@@ -96,19 +95,20 @@ fn screen() -> impl Strategy<Value = Size> {
     (1..70_u32, 1..60_u32).prop_map(|(width, height)| Size::new(width, height))
 }
 
-fn same_bytes_at_every_height<Q: Quality + 'static, F, D>(name: &str, usual: u32)
+fn same_bytes_at_every_height<Q: Quality, F, D>(name: &str, usual: u32)
 where
     F: PixelFormat<Word: Default + PartialEq + Debug>,
     D: DepthFormat<Word: PartialEq + Debug>,
     Rgb565: Background<F>,
 {
-    let materials = leaked::<Q>();
+    let surfaces = surfaces::<Q, F, D>();
     let drawn = Cell::new(0_u64);
     for_all(name, usual, (screen(), scene(6), 1..70_u32), |(screen, draws, any)| {
-        let whole = at_once::<Q, F, D>(screen, &draws, materials, &SKY);
-        let list = listed::<Q, F>(screen, &draws, materials);
+        let whole = at_once(screen, &draws, &surfaces, &SKY);
+        let mut memory = Memory::new();
+        let list = listed(&mut memory, screen, &draws, &surfaces);
         for rows in [1, 2, 7, 16, any, screen.height] {
-            prop_assert_eq!(&in_bands::<Q, F, D>(screen, rows, &list, &SKY), &whole, "{} rows", rows);
+            prop_assert_eq!(&in_bands(screen, rows, &list, &SKY), &whole, "{} rows", rows);
         }
         drawn.set(drawn.get() + list.lengths()[1] as u64);
         Ok(())
@@ -127,19 +127,15 @@ fn every_height_shows_the_bytes_of_a_whole_frame() {
 
 #[test]
 fn a_sorted_list_is_the_same_at_every_height() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, NoDepth>();
     let cases = (screen(), scene(6), 1..70_u32);
     for_all("sorted", 200, cases, |(screen, draws, any)| {
-        let mut list = listed::<_, Rgb565>(screen, &draws, materials);
+        let mut memory = Memory::new();
+        let mut list = listed(&mut memory, screen, &draws, &surfaces);
         list.sort_back_to_front();
-        let whole = in_bands::<_, Rgb565, NoDepth>(screen, screen.height, &list, &SKY);
+        let whole = in_bands(screen, screen.height, &list, &SKY);
         for rows in [1, 2, 7, 16, any] {
-            prop_assert_eq!(
-                &in_bands::<_, Rgb565, NoDepth>(screen, rows, &list, &SKY),
-                &whole,
-                "{} rows",
-                rows
-            );
+            prop_assert_eq!(&in_bands(screen, rows, &list, &SKY), &whole, "{} rows", rows);
         }
         Ok(())
     });
@@ -147,11 +143,12 @@ fn a_sorted_list_is_the_same_at_every_height() {
 
 #[test]
 fn two_threads_show_the_same_picture() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, Depth16>();
     let cases = (screen(), scene(6), prop::sample::select(vec![1_u32, 2, 7, 16, 60]));
     for_all("two threads", 150, cases, |(screen, draws, rows)| {
-        let whole = at_once::<_, Rgb565, Depth16>(screen, &draws, materials, &SKY).0;
-        let list = listed::<_, Rgb565>(screen, &draws, materials);
+        let whole = at_once(screen, &draws, &surfaces, &SKY).0;
+        let mut memory = Memory::new();
+        let list = listed(&mut memory, screen, &draws, &surfaces);
         // Whoever is done takes the next band: the split is as random as the machine's scheduler.
         let next = AtomicU32::new(0);
         let render = || {
@@ -188,17 +185,18 @@ fn two_threads_show_the_same_picture() {
 /// What `Stats` counts of a mesh in a list and in a frame is the same.
 #[test]
 fn a_list_counts_what_a_frame_counts() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, Depth16>();
     for_all("counts", 300, draw(), |draw| {
         let screen = Size::new(64, 48);
         let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
         let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("it fits");
-        let mut list = Large::<_, Rgb565>::new();
+        let mut memory = Memory::new();
+        let mut list = Large::new(&mut memory);
         let [mut in_frame, mut in_list] = [fixel::Stats::default(); 2];
         let (camera, mesh) = (draw.camera(screen), &common::scenes::meshes()[draw.mesh]);
-        let material = &materials[draw.material];
-        camera.draw_counted(mesh, &draw.pose, material, &mut band, &mut in_frame);
-        camera.draw_counted(mesh, &draw.pose, material, &mut list, &mut in_list).expect("it fits");
+        let (view, surface) = (camera.lit_by(&LIGHTS), surfaces[draw.material]);
+        view.draw_counted(mesh, &draw.pose, surface, &mut band, &mut in_frame);
+        view.draw_counted(mesh, &draw.pose, surface, &mut list, &mut in_list).expect("it fits");
         // Vertices are transformed once; and a triangle that lies between pixel centres is left out sooner.
         prop_assert!(in_list.transformed <= in_frame.transformed.max(mesh.vertices().len() as u32));
         prop_assert_eq!(in_list.drawn + in_list.out_of_sight, in_frame.drawn + in_frame.out_of_sight);
@@ -215,26 +213,25 @@ fn full<const V: usize, const T: usize, const D: usize>(
     screen: Size,
     draws: &[Draw],
     sorted: u32,
-    materials: &'static [Material<'static>; MATERIALS],
+    surfaces: &Surfaces<Rgb565, NoDepth>,
     met: &Cell<[u32; 4]>,
 ) -> Result<(), TestCaseError> {
-    type Small<const V: usize, const T: usize, const D: usize> =
-        DisplayList<'static, V, T, D, Material<'static>, Rgb565>;
-    let picture = |list: &Small<V, T, D>| {
+    let picture = |list: &DisplayList<'_, Rgb565, NoDepth, D>| {
         let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![(); 64 * 48]);
         let mut band = Band::<Rgb565, NoDepth>::new(screen, &mut pixels, &mut depth).expect("it fits");
         band.clear_to(&SKY);
         list.render(0, &mut band);
         pixels
     };
-    let mut list = Small::<V, T, D>::new();
+    let mut memory = ListMemory::<V, T>::new();
+    let mut list = DisplayList::new(&mut memory);
     let mut fitted = Vec::new();
     for (i, draw) in draws.iter().enumerate() {
         if sorted >> i & 1 == 1 {
             list.sort_back_to_front();
         }
         let (before, shown) = (list.lengths(), picture(&list));
-        let result = draw.add(screen, materials, &mut list);
+        let result = draw.draw(screen, surfaces, &mut list);
         let mut counts = met.get();
         match result {
             Ok(()) => {
@@ -246,19 +243,20 @@ fn full<const V: usize, const T: usize, const D: usize>(
                 prop_assert_eq!(list.lengths(), before);
                 prop_assert_eq!(picture(&list), shown);
                 // It is told truly.
-                let mut large = listed::<_, Rgb565>(screen, &fitted, materials);
-                prop_assert_eq!(draw.add(screen, materials, &mut large), Ok(()));
+                let mut memory = Memory::new();
+                let mut large = listed(&mut memory, screen, &fitted, surfaces);
+                prop_assert_eq!(draw.draw(screen, surfaces, &mut large), Ok(()));
                 let [_, triangles, draws] = large.lengths();
                 let is_true = match error {
-                    CapacityError::Vertices { .. } => true,
-                    CapacityError::Triangles { .. } => triangles > T,
-                    CapacityError::Draws { .. } => draws > D,
+                    CapacityError::Vertices { needed, .. } => needed > V,
+                    CapacityError::Triangles { needed, .. } => triangles > T && needed == triangles,
+                    CapacityError::Draws { needed, .. } => draws > D && needed == draws,
                 };
                 prop_assert!(is_true, "{} with {} triangles in {} draws", error, triangles, draws);
                 let (kind, capacity) = match error {
-                    CapacityError::Vertices { capacity } => (1, capacity),
-                    CapacityError::Triangles { capacity } => (2, capacity),
-                    CapacityError::Draws { capacity } => (3, capacity),
+                    CapacityError::Vertices { capacity, .. } => (1, capacity),
+                    CapacityError::Triangles { capacity, .. } => (2, capacity),
+                    CapacityError::Draws { capacity, .. } => (3, capacity),
                 };
                 prop_assert_eq!(capacity, [0, V, T, D][kind]);
                 counts[kind] += 1;
@@ -267,46 +265,158 @@ fn full<const V: usize, const T: usize, const D: usize>(
         met.set(counts);
     }
     // Drawn once more, as it was drawn: another draw changes the order back.
-    let fits = fitted.first().is_some_and(|draw: &Draw| draw.add(screen, materials, &mut list).is_ok());
+    let fits = fitted.first().is_some_and(|draw: &Draw| draw.draw(screen, surfaces, &mut list).is_ok());
     fitted.extend(fitted.first().copied().filter(|_| fits));
     if fits {
-        prop_assert_eq!(picture(&list), at_once::<_, Rgb565, NoDepth>(screen, &fitted, materials, &SKY).0);
+        prop_assert_eq!(picture(&list), at_once(screen, &fitted, surfaces, &SKY).0);
     }
     // And it can be used again.
     list.clear();
     prop_assert_eq!(list.lengths(), [0; 3]);
-    let again = fitted.first().map_or(Ok(()), |draw| draw.add(screen, materials, &mut list));
+    let again = fitted.first().map_or(Ok(()), |draw| draw.draw(screen, surfaces, &mut list));
     prop_assert_eq!(again, Ok(()));
     let first = &fitted[..fitted.len().min(1)];
-    prop_assert_eq!(picture(&list), at_once::<_, Rgb565, NoDepth>(screen, first, materials, &SKY).0);
+    prop_assert_eq!(picture(&list), at_once(screen, first, surfaces, &SKY).0);
     Ok(())
 }
 
 #[test]
 fn a_full_list_names_the_capacity_and_is_as_it_was() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, NoDepth>();
     let met = Cell::new([0; 4]);
     let cases = (prop::collection::vec(draw(), 1..12), any::<u32>());
     for_all("full lists", 250, cases, |(draws, sorted)| {
         let screen = Size::new(64, 48);
-        full::<0, 0, 0>(screen, &draws, sorted, materials, &met)?;
-        full::<4, 2, 1>(screen, &draws, sorted, materials, &met)?;
-        full::<63, 20, 8>(screen, &draws, sorted, materials, &met)?;
-        full::<64, 1000, 8>(screen, &draws, sorted, materials, &met)?;
-        full::<90, 60, 8>(screen, &draws, sorted, materials, &met)?;
-        full::<1000, 30, 8>(screen, &draws, sorted, materials, &met)?;
-        full::<1000, 500, 2>(screen, &draws, sorted, materials, &met)
+        full::<0, 0, 0>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<4, 2, 1>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<63, 20, 8>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<64, 1000, 8>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<90, 60, 8>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<1000, 30, 8>(screen, &draws, sorted, &surfaces, &met)?;
+        full::<1000, 500, 2>(screen, &draws, sorted, &surfaces, &met)
     });
     println!("fitted, full of vertices, triangles, draws: {:?}", met.get());
     assert!(met.get().iter().all(|&count| count > 100), "{:?}", met.get());
 }
 
+/// The room that eight triangles in a row take, drawn twice with two materials.
+fn drawn_twice<const V: usize, const T: usize, const D: usize>() -> Result<[usize; 3], CapacityError> {
+    const STRIP: [Vertex; 10] = {
+        let mut strip = [Vertex::new(0.0, 0.0, 0.0); 10];
+        let mut i = 0;
+        while i < 10 {
+            strip[i] = Vertex::new((i / 2) as f32 - 2.0, (i % 2) as f32, -4.0);
+            i += 1;
+        }
+        strip
+    };
+    const CORNERS: [[u16; 3]; 8] =
+        [[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5], [4, 6, 5], [5, 6, 7], [6, 8, 7], [7, 8, 9]];
+    const MESH: Mesh = Mesh::new(&STRIP, &CORNERS);
+    let camera = Camera::focal(40.0, Size::new(64, 48));
+    let mut memory = ListMemory::<V, T>::new();
+    let mut list = DisplayList::<Rgb565, Depth16, D>::new(&mut memory);
+    camera.draw(&MESH, &Pose::IDENTITY, &Material::flat(Rgb565::RED), &mut list)?;
+    camera.draw(&MESH, &Pose::IDENTITY, &Material::gouraud(), &mut list)?;
+    Ok(list.lengths())
+}
+
+#[test]
+fn what_an_error_says_is_needed_suffices() {
+    assert_eq!(drawn_twice::<9, 16, 2>(), Err(CapacityError::Vertices { capacity: 9, needed: 10 }));
+    assert_eq!(drawn_twice::<19, 16, 2>(), Err(CapacityError::Vertices { capacity: 19, needed: 20 }));
+    assert_eq!(drawn_twice::<20, 3, 2>(), Err(CapacityError::Triangles { capacity: 3, needed: 8 }));
+    assert_eq!(drawn_twice::<20, 9, 2>(), Err(CapacityError::Triangles { capacity: 9, needed: 16 }));
+    assert_eq!(drawn_twice::<20, 16, 0>(), Err(CapacityError::Draws { capacity: 0, needed: 1 }));
+    assert_eq!(drawn_twice::<20, 16, 1>(), Err(CapacityError::Draws { capacity: 1, needed: 2 }));
+    assert_eq!(drawn_twice::<20, 16, 2>(), Ok([20, 16, 2]));
+    let message = CapacityError::Triangles { capacity: 9, needed: 16 }.to_string();
+    assert!(message.contains("9 triangles") && message.contains("16"), "{message}");
+}
+
+/// Rings in the light of the view, by a shader of a caller's own.
+struct Rings {
+    width_log2: u32,
+}
+
+impl Shader<Rgb565> for Rings {
+    type Quality = QuarterPixel;
+
+    fn inputs(&self) -> Inputs {
+        Inputs::UvColor
+    }
+
+    fn coloring(&self) -> Coloring {
+        Coloring::of([255, 200, 40]).lit()
+    }
+
+    fn color(&self, at: &Varying) -> u16 {
+        let [u, v] = [at.u, at.v].map(|texels| i64::from(texels.to_num::<i32>()));
+        let is_ring = (u * u + v * v) >> self.width_log2 & 1 == 0;
+        let [red, green, blue] = at.color.map(|channel| channel.to_num::<u8>());
+        if is_ring { Rgb565::rgb888(red, green, blue) } else { Rgb565::rgb888(blue, red, green) }
+    }
+}
+
+/// Memory that outlives every frame. What is recorded in it may be gone with its frame: lights, shaders and meshes.
+#[test]
+fn a_list_on_static_memory_mixes_surfaces_and_lights_of_one_frame() {
+    static MEMORY: ConstStaticCell<ListMemory<400, 200>> = ConstStaticCell::new(ListMemory::new());
+    let memory = MEMORY.take();
+    let (screen, texture) = (Size::new(64, 48), Texture::new(&TEXELS, 4, 4));
+    let camera = Camera::focal(40.0, screen);
+    let mut pictures = Vec::new();
+    for frame in 0..4_u8 {
+        let lamp = Vec3::lit(f32::from(frame) - 1.5, 0.5, -1.0);
+        let lamps = [Light::point(lamp, [250, 200, 90], fixel::num::I16F16::lit("4"))];
+        let lights = Lights::new([20, 30, 40], &lamps);
+        let view = camera.lit_by(&lights);
+        let rings = Rings { width_log2: 9 + u32::from(frame) };
+        let exact = Material::textured(&texture).exact();
+        let surfaces: [Surface<'_, Rgb565, Depth16>; 4] = [
+            (&Material::flat(Rgb565::CSS_TEAL)).into(),
+            (&Material::textured(&texture).lit()).into(),
+            (&exact).into(),
+            Surface::new(&rings),
+        ];
+        let torus = common::scenes::meshes()[0];
+        let poses = [(-0.7, 0.5), (0.7, 0.5), (-0.7, -0.5), (0.7, -0.5)].map(|(x, y)| {
+            let turn = Turn::from_degrees(50 + 10 * i32::from(frame));
+            Pose::IDENTITY.rotated_x(turn).scaled_lit(0.5).at(Vec3::lit(x, y, -2.5))
+        });
+
+        let (mut whole, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
+        let mut band = Band::new(screen, &mut whole, &mut depth).expect("it fits");
+        band.clear_to(&SKY);
+        for (pose, surface) in poses.iter().zip(surfaces) {
+            view.draw(&torus, pose, surface, &mut band);
+        }
+        let whole_depth = band.depth().to_vec();
+
+        let mut list = DisplayList::<Rgb565, Depth16, 4>::new(memory);
+        for (pose, surface) in poses.iter().zip(surfaces) {
+            view.draw(&torus, pose, surface, &mut list).expect("there is room");
+        }
+        assert_eq!(list.lengths()[2], 4);
+        for rows in [1, 7, 16, 48] {
+            assert!(
+                in_bands(screen, rows, &list, &SKY) == (whole.clone(), whole_depth.clone()),
+                "{rows} rows"
+            );
+        }
+        pictures.push(whole);
+    }
+    pictures.dedup();
+    assert_eq!(pictures.len(), 4, "a frame shows what the one before it showed");
+}
+
 #[test]
 fn a_list_takes_what_it_says() {
-    type List = DisplayList<'static, 400, 440, 4>;
-    assert_eq!(List::bytes(), size_of::<List>());
+    type Memory = ListMemory<400, 440>;
+    type List = DisplayList<'static, Rgb565, Depth16, 4>;
+    assert_eq!([Memory::BYTES, List::BYTES], [size_of::<Memory>(), size_of::<List>()]);
     // 16 bytes a vertex, 8 a triangle and 2 for its place in the order; lengths and draws.
-    let room = List::bytes() - 400 * 16 - 440 * 10;
+    let room = Memory::BYTES + List::BYTES - 400 * 16 - 440 * 10;
     assert!(room <= 4 * 64 + 64, "{room} bytes for 4 draws");
 }
 
@@ -319,11 +429,13 @@ fn the_last_vertex_of_the_largest_mesh_keeps_its_texture() {
     }
     let triangles = [[65535, 65534, 65533]];
     let mesh = Mesh::try_new(&vertices, &triangles).expect("the indices are in range");
-    let material = &leaked::<QuarterPixel>()[4];
+    let surface = surfaces::<QuarterPixel, Rgb565, Depth16>()[4];
     let screen = Size::new(32, 24);
     let camera = Camera::focal(16.0, screen).at(Vec3::lit(0.0, 0.0, 1.5));
-    let mut list = DisplayList::<3, 1, 1>::new();
-    camera.draw(&mesh, &Pose::IDENTITY, material, &mut list).expect("three vertices are named");
+    let view = camera.lit_by(&LIGHTS);
+    let mut memory = ListMemory::<3, 1>::new();
+    let mut list = DisplayList::<Rgb565, Depth16, 1>::new(&mut memory);
+    view.draw(&mesh, &Pose::IDENTITY, surface, &mut list).expect("three vertices are named");
     let mut pictures = [[0; 32 * 24]; 2];
     let mut depth = [0; 32 * 24];
     for (picture, is_listed) in pictures.iter_mut().zip([false, true]) {
@@ -332,7 +444,7 @@ fn the_last_vertex_of_the_largest_mesh_keeps_its_texture() {
         if is_listed {
             list.render(0, &mut band);
         } else {
-            camera.draw(&mesh, &Pose::IDENTITY, material, &mut band);
+            view.draw(&mesh, &Pose::IDENTITY, surface, &mut band);
         }
     }
     assert!(pictures[0] == pictures[1] && pictures[0].iter().any(|word| *word != 0));
@@ -382,7 +494,7 @@ fn frames() -> impl Strategy<Value = Vec<Frame>> {
 
 #[test]
 fn sending_only_what_changed_shows_the_same_as_sending_all() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, Depth16>();
     let saved = Cell::new([0_u64; 2]);
     let cases = (screen(), 1..20_u32, frames());
     for_all("changes", 200, cases, |(screen, rows, frames)| {
@@ -396,7 +508,8 @@ fn sending_only_what_changed_shows_the_same_as_sending_all() {
         let mut shown = u8::MAX;
         let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, screen.height);
         for (draws, number, fails) in frames {
-            let list = listed::<_, Rgb565>(screen, &draws, materials);
+            let mut memory = Memory::new();
+            let list = listed(&mut memory, screen, &draws, &surfaces);
             let name = ["0", "12", "345", "6789"][usize::from(number)];
             let style = MonoTextStyle::new(&FONT_4X6, Rgb565::WHITE);
             let text = Text::new(name, Point::new(2, 8), style);
@@ -448,7 +561,7 @@ enum Event {
 
 #[test]
 fn other_bands_screens_and_marks_leave_nothing_stale() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, NoDepth>();
     let mark = (any::<[i32; 2]>(), any::<[u32; 2]>())
         .prop_map(|([x, y], [w, h])| Event::Mark(Rectangle::new(Point::new(x, y), Size::new(w, h))));
     let event = prop_oneof![
@@ -460,8 +573,8 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
     let cases = (1..60_u32, [1..20_u32, 1..80, 0..3], prop::collection::vec(event, 1..20));
     for_all("shapes", 300, cases, |(width, rows, events)| {
         let screen = Size::new(width, 60);
-        let mut memory = rows.map(|rows| vec![0; (width * rows) as usize]);
-        let mut bands = memory.iter_mut().zip(rows).map(|(pixels, rows)| {
+        let mut words = rows.map(|rows| vec![0; (width * rows) as usize]);
+        let mut bands = words.iter_mut().zip(rows).map(|(pixels, rows)| {
             Band::<Rgb565, NoDepth>::new(Size::new(width, rows), pixels, &mut []).expect("it fits")
         });
         let mut bands = [0; 3].map(|_| bands.next().expect("there are three"));
@@ -480,7 +593,8 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
                     continue;
                 }
             };
-            let list = listed::<_, Rgb565>(screen, &draws, materials);
+            let mut memory = Memory::new();
+            let list = listed(&mut memory, screen, &draws, &surfaces);
             let mut left = fails.unwrap_or(u32::MAX);
             let result = list.render_changed(height, &SKY, &mut bands[band], &mut changes, |area, band| {
                 left = left.checked_sub(1).ok_or(Busy)?;
@@ -493,7 +607,7 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
                 failed.set(failed.get() + 1);
                 continue;
             }
-            let whole = in_bands::<_, Rgb565, NoDepth>(Size::new(width, height), 16, &list, &SKY).0;
+            let whole = in_bands(Size::new(width, height), 16, &list, &SKY).0;
             let shown = display.pixels.iter().take(whole.len()).map(|color| color.into_storage());
             prop_assert!(shown.eq(whole), "{} rows of {}", rows[band], height);
         }
@@ -505,7 +619,7 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
 
 #[test]
 fn what_stands_still_behind_a_small_mover_is_not_sent() {
-    let materials = leaked::<QuarterPixel>();
+    let surfaces = surfaces::<QuarterPixel, Rgb565, Depth16>();
     let screen = Size::new(64, 48);
     let (mut pixels, mut depth) = (vec![0; 64 * 8], vec![0; 64 * 8]);
     let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 8), &mut pixels, &mut depth).expect("it fits");
@@ -513,7 +627,8 @@ fn what_stands_still_behind_a_small_mover_is_not_sent() {
     let mut report = |x: f32| {
         let pose = Pose::IDENTITY.scaled_lit(0.25).at(Vec3::lit(x, 0.0, -2.0));
         let ball = Draw { mesh: 2, material: 3, pose, inset: false, orthographic: false };
-        let list = listed::<_, Rgb565>(screen, &[ball], materials);
+        let mut memory = Memory::new();
+        let list = listed(&mut memory, screen, &[ball], &surfaces);
         let Ok(flushed) =
             list.render_changed(48, &SKY, &mut band, &mut changes, |_, _| Ok::<_, Infallible>(()));
         flushed
@@ -531,7 +646,7 @@ fn without_depth_a_list_is_drawn_back_to_front() {
         &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
         &[[0, 1, 2]],
     );
-    let colors: Vec<Material> = (0..12).map(|i| Material::flat(Rgb565::new(i, 63 - i, 2 * i))).collect();
+    let colors: Vec<_> = (0..12).map(|i| Material::flat(Rgb565::new(i, 63 - i, 2 * i))).collect();
     let triangle = || ([-12..12_i16, -8..8_i16], 1..5_i16);
     let shown = Cell::new(0_u32);
     for_all("back to front", 300, prop::collection::vec(triangle(), 1..12), |triangles| {
@@ -541,7 +656,8 @@ fn without_depth_a_list_is_drawn_back_to_front() {
             let tenths = |n: i16| fixel::fixed::types::I16F16::from_num(n) / 10;
             Pose::IDENTITY.at(Vec3::new(tenths(x), tenths(y), tenths(-10 * away)))
         };
-        let mut list = DisplayList::<64, 32, 16, _, Rgb565>::new();
+        let mut memory = ListMemory::<64, 32>::new();
+        let mut list = DisplayList::<Rgb565, NoDepth, 16>::new(&mut memory);
         for (triangle, material) in triangles.iter().zip(&colors) {
             prop_assert_eq!(camera.draw(&FACING, &pose(triangle), material, &mut list), Ok(()));
         }
@@ -582,7 +698,8 @@ fn draws_of_a_mesh_count_as_one_whatever_colours_are_seen() {
     let front = Pose::IDENTITY.at(Vec3::lit(-1.2, 0.0, 0.0));
     let behind = Pose::IDENTITY.rotated_y(Turn::from_degrees(180)).at(Vec3::lit(1.2, 0.0, 0.0));
     for poses in [[front, behind], [behind, front]] {
-        let mut list = DisplayList::<12, 4, 1, _, Rgb565>::new();
+        let mut memory = ListMemory::<12, 4>::new();
+        let mut list = DisplayList::<Rgb565, Depth16, 1>::new(&mut memory);
         let (mut whole, mut depth) = ([0; 40 * 24], [0; 40 * 24]);
         let mut frame = Band::<Rgb565, Depth16>::new(size, &mut whole, &mut depth).expect("it fits");
         for pose in &poses {
@@ -694,7 +811,7 @@ fn cameras_that_a_square_fills() -> Vec<(Size, Camera, Pose)> {
 #[test]
 fn the_largest_targets_are_filled_up_to_the_last_row_and_column() {
     const MESH: Mesh = Mesh::new(&SQUARE, &[[0, 1, 2], [0, 2, 3]]);
-    let white: Material = Material::flat(Rgb565::WHITE);
+    let white = Material::flat(Rgb565::WHITE);
     let cases = cameras_that_a_square_fills();
     for (target, camera, pose) in &cases {
         let words = (target.width * target.height) as usize;
@@ -714,7 +831,8 @@ fn the_largest_targets_are_filled_up_to_the_last_row_and_column() {
         camera.draw(&MESH, pose, &white, &mut band);
         assert_eq!(missing(0, &depth), None, "at once, {target:?}, {camera:?}, {pose:?}");
 
-        let mut list = DisplayList::<40, 20, 1>::new();
+        let mut memory = ListMemory::<40, 20>::new();
+        let mut list = DisplayList::<Rgb565, Depth16, 1>::new(&mut memory);
         camera.draw(&MESH, pose, &white, &mut list).expect("there is room");
         for rows in [7, 512, 1023] {
             for is_listed in [false, true] {

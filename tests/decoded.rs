@@ -15,7 +15,7 @@ use common::decoded::{
     Case, Chart, FAMILIES, RATIOS, SURFACES, Shows, Surface, TEXTURES, Truth, case, colors, words,
 };
 use common::{cases, for_all};
-use fixel::{Affine, Exact, Lights, Material, Quality, QuarterPixel, Texture, Textured};
+use fixel::{Affine, Exact, Material, Quality, QuarterPixel, Texture};
 use proptest::prelude::*;
 use reference::UNIT;
 
@@ -83,23 +83,18 @@ impl Decoder {
     }
 }
 
-fn material<'a>(texture: &Texture<'a>, clamp: bool) -> Material<'a> {
-    if clamp { Material::clamped(texture) } else { Material::textured(texture) }
-}
-
 /// Draws a case in a quality and decodes it: the largest error, and where it is.
 fn measure<Q: Quality>(case: &Case, charts: &[Chart], truth: &Truth, bound: f64) -> (Worst, String) {
-    let lights = Lights::new([255; 3], &[]);
     let (mut worst, mut place) = (Worst::default(), String::new());
     for (texture, axes) in charts[case.texture].textures() {
         let scale = case.scale as u8;
-        let material = material(&texture, case.clamp).texture_scale(scale).quality::<Q>();
-        let words = match case.surface {
-            // There is no other material that is clamped.
-            Surface::Textured if case.clamp => words(case, &material),
-            Surface::Plain => words(case, &material),
-            Surface::Textured => words(case, &Textured::new(&texture).texture_scale(scale).quality::<Q>()),
-            Surface::Gray | Surface::Colored => words(case, &material.lit(&lights)),
+        let textured = Material::textured(&texture).texture_scale(scale).quality::<Q>();
+        let clamped = Material::clamped(&texture).texture_scale(scale).quality::<Q>();
+        let words = match (case.surface, case.clamp) {
+            (Surface::Plain, false) => words(case, &textured),
+            (Surface::Plain, true) => words(case, &clamped),
+            (Surface::Gray | Surface::Colored, false) => words(case, &textured.lit()),
+            (Surface::Gray | Surface::Colored, true) => words(case, &clamped.lit()),
         };
         for (axis, shift) in axes {
             let (decoder, field) = (Decoder::new(case, axis), truth.field(axis));
@@ -319,11 +314,12 @@ struct Off {
 
 /// Draws colours, or white in a light, and decodes them.
 fn measure_colors<Q: Quality>(case: &Case, levels: Levels, bound: f64) -> Result<Off, TestCaseError> {
-    let (lights, white) = (Lights::new([255; 3], &[]), [0xffff; 64]);
+    let white = [0xffff; 64];
     let texture = Texture::new(&white, 3, 3);
     let words = match levels {
         Levels::Gouraud => words(case, &Material::gouraud().quality::<Q>()),
-        Levels::Light => words(case, &material(&texture, case.clamp).lit(&lights).quality::<Q>()),
+        Levels::Light if case.clamp => words(case, &Material::clamped(&texture).lit().quality::<Q>()),
+        Levels::Light => words(case, &Material::textured(&texture).lit().quality::<Q>()),
     };
     let truth = Truth::new(case, 2..5);
     let mut off = Off::default();

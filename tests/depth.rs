@@ -7,7 +7,9 @@ use std::cell::Cell;
 
 use common::generate::{strip, triangle};
 use common::{Canvas, Counting, Drawn, Record, Recorder, Recording, Strip, cases, for_all};
-use fixel::{Affine, Cull, Depth16, DepthFormat, Exact, Inputs, NoDepth, QuarterPixel, Shader, Varying};
+use fixel::{
+    Affine, Cull, Depth16, DepthFormat, Exact, Inputs, NoDepth, QuarterPixel, Shader, Surface, Varying,
+};
 use proptest::prelude::*;
 use reference::{ATTRIBUTES, Triangle};
 
@@ -37,7 +39,7 @@ where
     let mut canvas = Canvas::new::<D>(strip);
     for (number, triangle) in (0..).zip(triangles) {
         canvas
-            .draw::<Recording, D, _>(triangle, Cull::None, &Numbered(number))
+            .draw::<Recording, D, _>(triangle, Cull::None, Surface::new(&Numbered(number)))
             .expect("the triangle is within range");
     }
     canvas
@@ -155,14 +157,18 @@ fn in_bands(strip: Strip, triangles: &[Triangle], rows: u32, quality: u8) -> (Ca
             match quality {
                 0 => {
                     let shader = Recorder::<QuarterPixel>::new(all);
-                    depth16.draw::<Recording, Depth16, _>(triangle, Cull::None, &shader)
+                    depth16.draw::<Recording, Depth16, _>(triangle, Cull::None, Surface::new(&shader))
                 }
-                1 => {
-                    depth16.draw::<Recording, Depth16, _>(triangle, Cull::None, &Recorder::<Exact>::new(all))
-                }
-                _ => {
-                    depth16.draw::<Recording, Depth16, _>(triangle, Cull::None, &Recorder::<Affine>::new(all))
-                }
+                1 => depth16.draw::<Recording, Depth16, _>(
+                    triangle,
+                    Cull::None,
+                    Surface::new(&Recorder::<Exact>::new(all)),
+                ),
+                _ => depth16.draw::<Recording, Depth16, _>(
+                    triangle,
+                    Cull::None,
+                    Surface::new(&Recorder::<Affine>::new(all)),
+                ),
             }
             .expect("the triangle is within range");
             match quality {

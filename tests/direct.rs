@@ -12,10 +12,11 @@ use fixel::embedded_graphics::pixelcolor::{IntoStorage, PixelColor, Rgb565};
 use fixel::embedded_graphics::prelude::*;
 use fixel::embedded_graphics::primitives::Rectangle;
 use fixel::fixed::types::{I2F14, I12F4, I16F16, U1F31, U8F8, U10F22};
+use fixel::material::Kind;
 use fixel::{
-    Affine, Band, Camera, CornersError, Cull, DisplayList, Exact, Inputs, Material, Mesh, NoDepth,
-    PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex, ShadedTriangle,
-    Shader, Texture, Textured, Turn, Varying, Vec3, Vertex,
+    Affine, Band, Camera, CornersError, Cull, DisplayList, Exact, Inputs, ListMemory, Material, Mesh,
+    NoDepth, PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel, RangeError, ScreenVertex,
+    ShadedTriangle, Shader, Surface, Texture, Turn, Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::{Triangle, UNIT};
@@ -122,7 +123,7 @@ impl PixelFormat for Bits {
 }
 
 /// A shader of a caller's own.
-struct ShowU<Q>(PhantomData<Q>);
+struct ShowU<Q>(PhantomData<fn() -> Q>);
 
 impl<Q: Quality> Shader<Bits> for ShowU<Q> {
     type Quality = Q;
@@ -172,13 +173,19 @@ fn texels(log2: u32) -> Vec<u16> {
 }
 
 /// Through a run as long as the screen all rows are as in a band; through one of 64 pixels those that are not longer.
-fn same_as_band<F, S>(triangle: &[ScreenVertex; 3], strip: Strip, shader: &S) -> Result<(), TestCaseError>
+fn same_as_band<'a, F, S>(
+    triangle: &[ScreenVertex; 3],
+    strip: Strip,
+    shader: &S,
+    surface: impl Into<Surface<'a, F, NoDepth>>,
+) -> Result<(), TestCaseError>
 where
     F: PixelFormat<Word: PartialEq + Copy, Color: PartialEq + std::fmt::Debug>,
     S: Shader<F>,
 {
+    let surface = surface.into();
     let expected = in_band::<F>(strip, |band| {
-        fixel::draw_triangle(triangle, Cull::None, shader, band).expect("within range");
+        fixel::draw_triangle(triangle, Cull::None, surface, band).expect("within range");
     });
     let drawn = ShadedTriangle::new(triangle, Cull::None, shader).expect("within range").format::<F>();
     let area = Rectangle::new(Point::new(0, strip.row as i32), strip.size());
@@ -198,6 +205,22 @@ where
     Ok(())
 }
 
+fn material_as_in_band<K: Kind, Q: Quality>(
+    triangle: &[ScreenVertex; 3],
+    strip: Strip,
+    material: &Material<'_, K, Q>,
+) -> Result<(), TestCaseError> {
+    same_as_band::<Rgb565, _>(triangle, strip, material, material)
+}
+
+fn shader_as_in_band(
+    triangle: &[ScreenVertex; 3],
+    strip: Strip,
+    shader: &(impl Shader<Bits> + Sync),
+) -> Result<(), TestCaseError> {
+    same_as_band::<Bits, _>(triangle, strip, shader, Surface::new(shader))
+}
+
 #[test]
 fn a_triangle_is_a_bands_byte_for_byte_800_cases() {
     // As wide as a screen may be, so that the band's right border cuts no row shorter than the display's.
@@ -212,13 +235,13 @@ fn a_triangle_is_a_bands_byte_for_byte_800_cases() {
     for_all("direct: triangles", 800, cases, |(strip, triangle, kind)| {
         let corners = triangle.0.map(screen_vertex);
         match kind {
-            0 => same_as_band::<Rgb565, _>(&corners, strip, &Material::textured(&small)),
-            1 => same_as_band::<Rgb565, _>(&corners, strip, &Textured::new(&large)),
-            2 => same_as_band::<Rgb565, _>(&corners, strip, &Material::clamped(&large)),
-            3 => same_as_band::<Rgb565, _>(&corners, strip, &Material::gouraud()),
-            4 => same_as_band::<Rgb565, _>(&corners, strip, &Material::gouraud().exact()),
-            5 => same_as_band::<Bits, _>(&corners, strip, &ShowU::<QuarterPixel>(PhantomData)),
-            _ => same_as_band::<Bits, _>(&corners, strip, &ShowU::<Affine>(PhantomData)),
+            0 => material_as_in_band(&corners, strip, &Material::textured(&small)),
+            1 => material_as_in_band(&corners, strip, &Material::textured(&large)),
+            2 => material_as_in_band(&corners, strip, &Material::clamped(&large)),
+            3 => material_as_in_band(&corners, strip, &Material::gouraud()),
+            4 => material_as_in_band(&corners, strip, &Material::gouraud().exact()),
+            5 => shader_as_in_band(&corners, strip, &ShowU::<QuarterPixel>(PhantomData)),
+            _ => shader_as_in_band(&corners, strip, &ShowU::<Affine>(PhantomData)),
         }
     });
 }
@@ -359,7 +382,7 @@ fn a_picture_is_a_bands_in_every_part_of_a_display_1500_cases() {
             image.run::<2047>().draw(&mut screen).expect("patience");
             screen.pixels
         } else {
-            let shader = Textured::new(&texture);
+            let shader = Material::textured(&texture);
             in_band::<Rgb565>(Strip::new(1023, 120, 0), |band| {
                 for half in halves(&with_texels(&corners, 5)) {
                     fixel::draw_triangle(&half, Cull::Back, &shader, band).expect("within range");
@@ -399,7 +422,7 @@ fn what_a_pixel_shows_does_not_depend_on_what_else_is_shown_400_cases() {
             ..ScreenVertex::default()
         };
         let triangle = [vertex(places[0], p, 0), vertex(places[1], q, 400), vertex(places[2], p, 90)];
-        let shader = Textured::new(&texture);
+        let shader = Material::textured(&texture);
         let drawn = ShadedTriangle::new(&triangle, Cull::None, &shader).expect("within range").run::<24>();
         let (mut whole, mut part) = (Screen::of(u32::MAX, u32::MAX), Screen::new(area));
         drawn.draw(&mut whole).expect("patience");
@@ -431,7 +454,8 @@ fn is_folded(camera: &Camera, pose: &Pose, size: [I16F16; 2]) -> bool {
     let mesh = Mesh::try_new(&vertices, &triangles).expect("the indices are in range");
     [Cull::Back, Cull::Front].into_iter().all(|cull| {
         let material = Material::flat(Rgb565::RED).cull(cull);
-        let mut list = DisplayList::<32, 32, 1>::new();
+        let mut memory = ListMemory::<32, 32>::new();
+        let mut list = DisplayList::<Rgb565, NoDepth, 1>::new(&mut memory);
         camera.draw(&mesh, pose, &material, &mut list).expect("there is room for what clipping makes of two");
         list.lengths()[1] > 0
     })

@@ -9,16 +9,18 @@ use crate::common;
 
 use std::cell::Cell;
 use std::convert::Infallible;
+use std::marker::PhantomData;
 
 use bus::{Bus, Channel, Clock, bytes, memory, words};
 use common::for_all;
-use common::scenes::{Draw, MATERIALS, materials, meshes, scene};
+use common::scenes::{Draw, Maker, Surfaces, meshes, of_materials, scene};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
+use fixel::material::Kind;
 use fixel::{
-    Background, Band, BigEndian, Camera, Changes, Coloring, Cull, Depth16, DisplayList, Inputs, Material,
-    Mesh, NoDepth, PixelFormat, Pose, QuarterPixel, Shader, TargetError, Texture, Turn, Varying, Vec3,
-    Vertex,
+    Background, Band, BigEndian, Camera, Changes, Coloring, Cull, Depth16, DisplayList, Inputs, ListMemory,
+    Material, Mesh, NoDepth, PixelFormat, Pose, QuarterPixel, Shader, Surface, TargetError, Texture, Turn,
+    Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 
@@ -30,12 +32,12 @@ const PIXEL: u64 = 35;
 
 /// A material whose pixels take their time.
 #[derive(Debug)]
-struct Timed {
-    material: Material<'static>,
+struct Timed<K> {
+    material: Material<'static, K>,
     clock: Clock,
 }
 
-impl<F: PixelFormat> Shader<F> for Timed {
+impl<F: PixelFormat, K: Kind> Shader<F> for Timed<K> {
     type Quality = QuarterPixel;
 
     fn inputs(&self) -> Inputs {
@@ -51,8 +53,8 @@ impl<F: PixelFormat> Shader<F> for Timed {
         Shader::<F>::cull(&self.material)
     }
 
-    fn coloring<'p>(&self, pose: &'p Pose) -> Coloring<'p> {
-        Shader::<F>::coloring(&self.material, pose)
+    fn coloring(&self) -> Coloring {
+        Shader::<F>::coloring(&self.material)
     }
 
     fn texture_scale(&self) -> u32 {
@@ -60,7 +62,8 @@ impl<F: PixelFormat> Shader<F> for Timed {
     }
 }
 
-type List<'a> = DisplayList<'a, 2000, 1000, 16, Timed, BigEndian<Rgb565>>;
+type Memory = ListMemory<2000, 1000>;
+type List<'a> = DisplayList<'a, BigEndian<Rgb565>, Depth16, 16>;
 type TimedBand = Band<'static, BigEndian<Rgb565>, Depth16>;
 
 /// A screen in bands of one height.
@@ -165,14 +168,14 @@ fn expected_of_two(draws: &[u64], send: u64) -> u64 {
 }
 
 /// The words of a frame that is drawn at once, without any of this.
-fn at_once(screen: Screen, materials: &[Timed], draws: &[Draw]) -> Vec<u16> {
+fn at_once(screen: Screen, surfaces: &Surfaces<Rgb565, Depth16>, draws: &[Draw]) -> Vec<u16> {
     let size = screen.size();
     let area = (size.width * size.height) as usize;
     let (mut pixels, mut depth) = (vec![0; area], vec![0; area]);
     let mut band = Band::<Rgb565, Depth16>::new(size, &mut pixels, &mut depth).expect("it fits");
     band.clear_to(&SKY);
     for draw in draws {
-        draw.camera(size).draw(&meshes()[draw.mesh], &draw.pose, &materials[draw.material], &mut band);
+        draw.draw(size, surfaces, &mut band);
     }
     pixels
 }
@@ -184,18 +187,16 @@ fn the_display_shows_what_is_drawn_at_once() {
         (1..70_u32, 1..12_u32, 1..7_u32).prop_map(|(width, rows, bands)| Screen { width, rows, bands });
     for_all("DMA", 150, (screens, scene(6), 1..400_u64), |(screen, draws, cycles_a_byte)| {
         let clock = Clock::default();
-        let plain: [Material<'static>; MATERIALS] = materials();
-        let timed = plain.map(|material| Timed { material, clock: clock.clone() });
-        let mut list = List::new();
+        let surfaces = all_timed(&clock);
+        let mut memory = Memory::new();
+        let mut list = List::new(&mut memory);
         for draw in &draws {
-            let (mesh, material) = (&meshes()[draw.mesh], &timed[draw.material]);
-            draw.camera(screen.size()).draw(mesh, &draw.pose, material, &mut list).expect("it is large");
+            draw.draw(screen.size(), &surfaces, &mut list).expect("it is large");
         }
-        let picture: Vec<u8> =
-            at_once(screen, &plain.map(|material| Timed { material, clock: Clock::default() }), &draws)
-                .into_iter()
-                .flat_map(u16::to_be_bytes)
-                .collect();
+        let picture: Vec<u8> = at_once(screen, &all_timed(&Clock::default()), &draws)
+            .into_iter()
+            .flat_map(u16::to_be_bytes)
+            .collect();
         let bus = || Bus::new(screen.size(), &clock, cycles_a_byte);
         let send = cycles_a_byte * 2 * screen.words() as u64;
         let one = with_one_band(screen, 2, &list, bus());
@@ -213,12 +214,30 @@ fn the_display_shows_what_is_drawn_at_once() {
 
 const UPRIGHT: Screen = Screen { width: 240, rows: 16, bands: 20 };
 
-fn timed(material: Material<'static>, clock: &Clock) -> &'static Timed {
-    Box::leak(Box::new(Timed { material, clock: clock.clone() }))
+fn timed<F: PixelFormat>(
+    material: Material<'static, impl Kind>,
+    clock: &Clock,
+) -> Surface<'static, F, Depth16> {
+    Surface::new(Box::leak(Box::new(Timed { material, clock: clock.clone() })))
+}
+
+/// Makes surfaces whose pixels take their time.
+struct InTime<'a, F>(&'a Clock, PhantomData<F>);
+
+impl<F: PixelFormat> Maker for InTime<'_, F> {
+    type Made = Surface<'static, F, Depth16>;
+
+    fn make<K: Kind>(&self, material: Material<'static, K>) -> Self::Made {
+        timed(material, self.0)
+    }
+}
+
+fn all_timed<F: PixelFormat>(clock: &Clock) -> Surfaces<F, Depth16> {
+    of_materials(&InTime(clock, PhantomData))
 }
 
 /// All of the screen, with the same work in every row: a checkered wall that is one triangle.
-fn wall(list: &mut List<'static>, camera: &Camera, clock: &Clock) {
+fn wall(list: &mut List<'_>, camera: &Camera, clock: &Clock) {
     static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1);
     const WALL: Mesh = Mesh::new(
         &[
@@ -233,13 +252,13 @@ fn wall(list: &mut List<'static>, camera: &Camera, clock: &Clock) {
 }
 
 /// Much work in the middle of the screen, and none above and below.
-fn torus(list: &mut List<'static>, camera: &Camera, clock: &Clock) {
+fn torus(list: &mut List<'_>, camera: &Camera, clock: &Clock) {
     let pose = Pose::IDENTITY.rotated_x(Turn::from_degrees(50)).at(Vec3::lit(0.0, 0.0, -1.0));
     camera.draw(&meshes()[0], &pose, timed(Material::gouraud(), clock), list).expect("it is large");
 }
 
 /// The cycles of so many frames: drawing them, sending them, both with one band, both with two, and the longest that a band took.
-fn times(list: &List<'static>, clock: &Clock, frames: u32, cycles_a_byte: u64) -> [u64; 5] {
+fn times(list: &List<'_>, clock: &Clock, frames: u32, cycles_a_byte: u64) -> [u64; 5] {
     let bus = || Bus::new(UPRIGHT.size(), clock, cycles_a_byte);
     let one = with_one_band(UPRIGHT, frames, list, bus());
     let two = with_two_bands(UPRIGHT, frames, list, bus());
@@ -257,7 +276,8 @@ fn frames_take_as_long_as_the_slower_of_drawing_and_sending() {
     let camera = Camera::perspective(Turn::from_degrees(60), UPRIGHT.size()).at(Vec3::lit(0.0, 0.0, 3.0));
 
     println!("a wall: thousands of cycles of draw, send, one band, two bands, longest band");
-    let mut list = List::new();
+    let mut memory = Memory::new();
+    let mut list = List::new(&mut memory);
     wall(&mut list, &camera, &clock);
     // At 125 MHz a bus of 62.5 MHz takes 16 cycles a byte.
     for cycles_a_byte in [8, 16, 19, 40] {
@@ -277,7 +297,8 @@ fn frames_take_as_long_as_the_slower_of_drawing_and_sending() {
     }
 
     println!("a torus");
-    let mut list = List::new();
+    let mut memory = Memory::new();
+    let mut list = List::new(&mut memory);
     torus(&mut list, &camera, &clock);
     for cycles_a_byte in [4, 8, 16] {
         let [draw, send, one, two, _] = times(&list, &clock, 4, cycles_a_byte);
@@ -298,7 +319,8 @@ fn only_bands_with_changes_are_sent() {
     let mut band = screen.band();
     let mut changes = Changes::<10>::new();
     let mut channel = Some(Channel::Idle(Bus::new(screen.size(), &clock, 1), memory(screen.words())));
-    let mut list = List::new();
+    let mut memory = Memory::new();
+    let mut list = List::new(&mut memory);
     let mut send = |list: &List<'_>| {
         let result = list.render_changed(
             screen.size().height,
@@ -359,7 +381,8 @@ fn pixels_are_swapped_and_nothing_else() {
 #[test]
 fn below_the_last_full_band_there_is_a_part_and_then_all_of_it_again() {
     let screen = Screen { width: 6, rows: 4, bands: 1 };
-    let (mut band, list) = (screen.band(), List::new());
+    let mut of_list = Memory::new();
+    let (mut band, list) = (screen.band(), List::new(&mut of_list));
     let mut other = memory(24);
     for fails in [false, true] {
         let mut rows = Vec::new();
@@ -390,7 +413,8 @@ fn without_depth_no_memory_is_asked_for() {
         &[[0, 1, 2]],
     );
     let white = Material::gouraud();
-    let mut list = DisplayList::<4, 2, 1>::new();
+    let mut memory = ListMemory::<4, 2>::new();
+    let mut list = DisplayList::<Rgb565, NoDepth, 1>::new(&mut memory);
     let camera = Camera::focal(6.0, size).at(Vec3::lit(0.0, 0.0, 3.0));
     camera.draw(&TRIANGLE, &Pose::IDENTITY, &white, &mut list).expect("it fits");
     list.render(0, &mut band);

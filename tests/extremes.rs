@@ -6,8 +6,8 @@ use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I12F4, I16F16, U10F22};
 use fixel::{
-    Band, Camera, Cull, Depth16, DisplayList, Light, Lights, Material, Mesh, Pose, Stats, Texture, Turn,
-    Vec3, Vertex,
+    Band, Camera, Cull, Depth16, DisplayList, Light, Lights, ListMemory, Material, Mesh, Pose, Stats,
+    Surface, Texture, Turn, Vec3, Vertex,
 };
 
 const CORNERS: [[f32; 3]; 4] = [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.5], [-1.0, 1.0, -0.5]];
@@ -138,7 +138,7 @@ fn cameras(size: Size) -> Vec<(&'static str, Camera)> {
 const SIZES: [(u32, u32); 7] = [(0, 0), (1, 1), (0, 9), (9, 0), (1, 40), (40, 1), (24, 20)];
 
 /// Everything with everything; how many combinations were drawn, and how many of these left a pixel.
-fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
+fn draw_all(row: u32, surfaces: &[(&str, Surface<'_, Rgb565, Depth16>)], lights: &Lights<'_>) -> (u32, u32) {
     let (mut drawn, mut seen) = (0, 0);
     for (width, height) in SIZES {
         let size = Size::new(width, height);
@@ -148,10 +148,11 @@ fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
             let mesh = Mesh::try_new(vertices, triangles).expect("the indices are in range");
             for (pose_name, pose) in &poses() {
                 for (camera_name, camera) in &cameras(size) {
-                    for (material_name, material) in materials {
+                    for (surface_name, surface) in surfaces {
+                        let view = camera.lit_by(lights);
                         let about = || {
                             format!(
-                                "{mesh_name}, {pose_name}, {camera_name}, {material_name}, {width} x {height}"
+                                "{mesh_name}, {pose_name}, {camera_name}, {surface_name}, {width} x {height}"
                             )
                         };
                         pixels.fill(0x1234);
@@ -160,7 +161,7 @@ fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
                             .expect("the slices are long enough")
                             .starting_at(row);
                         let mut stats = Stats::default();
-                        camera.draw_counted(&mesh, pose, material, &mut band, &mut stats);
+                        view.draw_counted(&mesh, pose, surface, &mut band, &mut stats);
                         assert_eq!(stats.meshes, 1, "{}", about());
                         assert!(
                             pixels[words..].iter().all(|word| *word == 0x1234),
@@ -172,8 +173,9 @@ fn draw_all(row: u32, materials: &[(&str, Material<'_>)]) -> (u32, u32) {
                             pixels.iter().zip(&depth).any(|(word, depth)| *depth == 0 && *word != 0x1234);
                         assert!(!touched, "a pixel without depth: {}", about());
                         // Kept for later it is the same.
-                        let mut list = DisplayList::<64, 32, 1>::new();
-                        let kept = camera.draw(&mesh, pose, material, &mut list);
+                        let mut memory = ListMemory::<64, 32>::new();
+                        let mut list = DisplayList::<_, _, 1>::new(&mut memory);
+                        let kept = view.draw(&mesh, pose, surface, &mut list);
                         assert_eq!(kept, Ok(()), "{}", about());
                         let (mut listed, mut listed_depth) = (vec![0x1234; words], vec![0; words]);
                         let mut band = Band::<Rgb565, Depth16>::new(size, &mut listed, &mut listed_depth)
@@ -202,12 +204,13 @@ fn every_mesh_pose_camera_and_target_at_its_extremes_86_184_combinations() {
         Light::point(translation([i32::MAX; 3]), [255; 3], I16F16::ZERO),
     ];
     let lights = Lights::new([255; 3], &lights);
-    let materials = [
-        ("texture", Material::textured(&texture).cull(Cull::None)),
-        ("repeated and lit", Material::textured(&texture).texture_scale(u8::MAX).lit(&lights).faceted()),
-        ("lit on both sides", Material::gouraud().lit(&lights).two_sided().cull(Cull::None)),
+    let repeated = Material::textured(&texture).texture_scale(u8::MAX);
+    let surfaces = [
+        ("texture", (&Material::textured(&texture).cull(Cull::None)).into()),
+        ("repeated and lit", (&repeated.lit().faceted()).into()),
+        ("lit on both sides", (&Material::gouraud().lit().two_sided().cull(Cull::None)).into()),
     ];
-    let (drawn, seen) = draw_all(0, &materials);
+    let (drawn, seen) = draw_all(0, &surfaces, &lights);
     println!("extremes: {drawn} combinations, {seen} of them with a pixel");
     assert!(drawn == 86_184 && seen > 800);
 }

@@ -11,9 +11,10 @@ use common::generate::{strip, triangle};
 use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::pixelcolor::raw::RawU16;
+use fixel::material::Kind;
 use fixel::{
-    Cull, Inputs, Lights, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Texture, TextureError,
-    Varying,
+    Affine, Cull, Exact, Inputs, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Surface, Texture,
+    TextureError, Varying,
 };
 use proptest::prelude::*;
 use reference::{Corner, Sample, Triangle, UNIT};
@@ -62,8 +63,28 @@ fn tolerated(triangle: &Triangle, exact: &Sample<'_>, attribute: usize, bound: f
     ((value - off).max(f64::from(low)), (value + off).min(f64::from(high)))
 }
 
-fn of_texture<'a>(texture: &Texture<'a>, clamp: bool) -> Material<'a> {
-    if clamp { Material::clamped(texture) } else { Material::textured(texture) }
+/// A surface that writes down what it shows.
+type Recorded<'a> = Surface<'a, Recording, NoDepth>;
+
+fn of_texture<'a, Q: Quality>(texture: &Texture<'a>, clamp: bool) -> Recorded<'a> {
+    scaled_texture::<Q>(texture, clamp, 0, false)
+}
+
+fn scaled_texture<'a, Q: Quality>(
+    texture: &Texture<'a>,
+    clamp: bool,
+    scale_log2: u32,
+    is_lit: bool,
+) -> Recorded<'a> {
+    fn of<'a, K: Kind, Q: Quality>(material: Material<'a, K, Q>, is_lit: bool) -> Recorded<'a> {
+        if is_lit { (&material.lit()).into() } else { (&material).into() }
+    }
+    let scale_log2 = scale_log2 as u8;
+    if clamp {
+        of(Material::clamped(texture).texture_scale(scale_log2).quality::<Q>(), is_lit)
+    } else {
+        of(Material::textured(texture).texture_scale(scale_log2).quality::<Q>(), is_lit)
+    }
 }
 
 /// Whether a texel is met between two coordinates.
@@ -76,10 +97,10 @@ fn met(texel: i64, side: i64, clamp: bool, (low, high): (f64, f64)) -> bool {
     }
 }
 
-fn draw<Q: Quality>(strip: Strip, triangle: &Triangle, material: &Material<'_, Q>) -> Vec<Drawn> {
+fn draw<'a>(strip: Strip, triangle: &Triangle, surface: impl Into<Recorded<'a>>) -> Vec<Drawn> {
     let mut canvas = Canvas::new::<NoDepth>(strip);
     canvas
-        .draw::<Recording, NoDepth, _>(triangle, Cull::None, material)
+        .draw::<Recording, NoDepth, _>(triangle, Cull::None, surface)
         .expect("the triangle is within range");
     canvas.pixels
 }
@@ -95,14 +116,14 @@ fn stretched(mut triangle: Triangle, log2: u32) -> Triangle {
 }
 
 /// Whether all texels along one axis that a triangle shows are within the bound.
-fn fetches_within<Q: Quality>(
+fn fetches_within<'a>(
     strip: Strip,
     triangle: &Triangle,
-    material: &Material<'_, Q>,
+    surface: impl Into<Recorded<'a>>,
     (axis, log2, clamp, bound): (usize, u32, bool, f64),
     mut tells: impl FnMut(f64, f64),
 ) -> Result<(), TestCaseError> {
-    for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, material)) {
+    for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, surface)) {
         prop_assert_eq!(drawn.written, triangle.covers(x, y));
         if !drawn.written {
             continue;
@@ -127,12 +148,7 @@ fn fetches_within<Q: Quality>(
     Ok(())
 }
 
-fn textured<Q: Quality>(
-    name: &str,
-    usual: u32,
-    bound: f64,
-    quality: impl Fn(Material<'static>) -> Material<'static, Q>,
-) {
+fn textured<Q: Quality>(name: &str, usual: u32, bound: f64) {
     let charts: &'static [Chart] = Vec::leak(SIZES.map(Chart::new).into());
     let (fetched, telling) = (Cell::new(0_u64), Cell::new(0_u64));
     // Textures that are stretched show more of an error than those of which each pixel sees another texel.
@@ -142,12 +158,12 @@ fn textured<Q: Quality>(
     for_all(name, usual, cases, |(strip, triangle, stretch, chart, clamp)| {
         let triangle = stretched(triangle, stretch);
         for (attribute, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-            let material = quality(of_texture(&texture, clamp));
+            let surface = of_texture::<Q>(&texture, clamp);
             let tells = |low: f64, high: f64| {
                 fetched.set(fetched.get() + 1);
                 telling.set(telling.get() + u64::from(high - low < f64::from(1 << log2) / 2.0));
             };
-            fetches_within(strip, &triangle, &material, (attribute, log2, clamp, bound), tells)?;
+            fetches_within(strip, &triangle, surface, (attribute, log2, clamp, bound), tells)?;
         }
         Ok(())
     });
@@ -161,12 +177,12 @@ fn textured<Q: Quality>(
 
 #[test]
 fn quarter_pixel_fetches_a_texel_within_the_bound_for_4_000_triangles() {
-    textured("texels, QuarterPixel", 4000, 0.25, |material| material);
+    textured::<QuarterPixel>("texels, QuarterPixel", 4000, 0.25);
 }
 
 #[test]
 fn exact_fetches_a_texel_within_the_bound_for_4_000_triangles() {
-    textured("texels, Exact", 4000, 0.02, Material::exact);
+    textured::<Exact>("texels, Exact", 4000, 0.02);
 }
 
 /// Found by hill climbing: a row of 31 pixels, in which 8 fraction bits of a step were too few.
@@ -205,10 +221,10 @@ fn level_rows_of_textures_are_within_the_bound_600_cases() {
 
 /// Whether all texels along one axis of a straight triangle are those at its coordinates, on the right side of whole ones and
 /// never beyond the vertices' range.
-fn straight_texels<Q: Quality>(
+fn straight_texels(
     strip: Strip,
     triangle: &Triangle,
-    material: &Material<'_, Q>,
+    surface: Recorded<'_>,
     (axis, log2, clamp): (usize, u32, bool),
     (scale_log2, ahead): (u32, i128),
 ) -> Result<u32, TestCaseError> {
@@ -221,7 +237,7 @@ fn straight_texels<Q: Quality>(
         right.clone().take(side as usize).any(|right| right.rem_euclid(side) == texel)
     };
     let mut telling = 0;
-    for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, material)) {
+    for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, surface)) {
         if !drawn.written {
             continue;
         }
@@ -286,7 +302,6 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
         (Just(strip), triangle(strip), plane, (q, 0..9_u32), texture)
     });
     let telling = Cell::new(0_u64);
-    let lights = Lights::new([255; 3], &[]);
     for_all(name, usual, cases, |(strip, triangle, (gradients, starts), (q, stretch), texture)| {
         let (chart, clamp, scale_log2) = texture;
         // Beyond ±32768 texels coordinates begin anew, which no texture that repeats shows.
@@ -299,7 +314,9 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
             return Ok(());
         };
         for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-            let material = of_texture(&texture, clamp).texture_scale(scale_log2 as u8);
+            let [affine, quarter_pixel, exact] =
+                [scaled_texture::<Affine>, scaled_texture::<QuarterPixel>, scaled_texture::<Exact>]
+                    .map(|make| [false, true].map(|is_lit| make(&texture, clamp, scale_log2, is_lit)));
             let by = (axis, log2, clamp);
             let error = (scale_log2, ahead(&triangle, axis, scale_log2));
             // Full light, grey or not, leaves texels as they are.
@@ -307,16 +324,16 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
                 let blue = if stretch & 1 == 0 { 255 << 16 } else { 0xff_80_00 };
                 corner.attributes[2..].copy_from_slice(&[255 << 16, 255 << 16, blue]);
             }
-            let lit = material.lit(&lights);
-            let mut all = straight_texels(strip, &triangle, &material.affine(), by, error)?;
-            all += straight_texels(strip, &triangle, &lit.affine(), by, error)?;
+            let mut all = 0;
+            for surface in affine {
+                all += straight_texels(strip, &triangle, surface, by, error)?;
+            }
             for corner in &mut triangle.0 {
                 corner.q = q;
             }
-            all += straight_texels(strip, &triangle, &material, by, error)?;
-            all += straight_texels(strip, &triangle, &lit, by, error)?;
-            all += straight_texels(strip, &triangle, &material.exact(), by, error)?;
-            all += straight_texels(strip, &triangle, &lit.exact(), by, error)?;
+            for surface in [quarter_pixel, exact].into_iter().flatten() {
+                all += straight_texels(strip, &triangle, surface, by, error)?;
+            }
             telling.set(telling.get() + u64::from(all));
         }
         Ok(())
@@ -356,10 +373,11 @@ fn halves([a, b, c, d]: [Corner; 4], other: bool) -> [Triangle; 2] {
 }
 
 /// What both show together.
-fn draw_both<Q: Quality>(strip: Strip, halves: &[Triangle; 2], material: &Material<'_, Q>) -> Vec<Drawn> {
+fn draw_both<'a>(strip: Strip, halves: &[Triangle; 2], surface: impl Into<Recorded<'a>>) -> Vec<Drawn> {
+    let surface = surface.into();
     let mut canvas = Canvas::new::<NoDepth>(strip);
     for half in halves {
-        canvas.draw::<Recording, NoDepth, _>(half, Cull::None, material).expect("within range");
+        canvas.draw::<Recording, NoDepth, _>(half, Cull::None, surface).expect("within range");
     }
     canvas.pixels
 }
@@ -377,7 +395,6 @@ fn sprite_texels(halves: &[Triangle; 2], strip: Strip, axis: usize, scale_log2: 
 fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
     let charts: &'static [Chart] =
         Vec::leak([0, 2, 3, 5, 6, 7, 8, 9].map(|log2| Chart::new((log2, log2))).into());
-    let lights = Lights::new([255; 3], &[]);
     // How many texels for how many pixels.
     let ratios = prop::sample::select(&[(1, 1), (1, 1), (1, 1), (2, 1), (1, 2), (3, 1), (4, 1)][..]);
     let place = || {
@@ -413,7 +430,6 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
             let halves = halves(corners, diagonal);
             let strip = Strip::new((to[0] as u32).div_ceil(16), (to[1] as u32).div_ceil(16), 0);
             for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-                let material = of_texture(&texture, clamp).texture_scale(scale_log2 as u8);
                 let side = 1 << log2;
                 let expected: Vec<_> = sprite_texels(&halves, strip, axis, scale_log2)
                     .into_iter()
@@ -424,11 +440,12 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
                     })
                     .collect();
                 let pictures = [
-                    draw_both(strip, &halves, &material),
-                    draw_both(strip, &halves, &material.affine()),
-                    draw_both(strip, &halves, &material.exact()),
-                    draw_both(strip, &halves, &material.lit(&lights)),
-                ];
+                    scaled_texture::<QuarterPixel>(&texture, clamp, scale_log2, false),
+                    scaled_texture::<Affine>(&texture, clamp, scale_log2, false),
+                    scaled_texture::<Exact>(&texture, clamp, scale_log2, false),
+                    scaled_texture::<QuarterPixel>(&texture, clamp, scale_log2, true),
+                ]
+                .map(|surface| draw_both(strip, &halves, surface));
                 for (kind, picture) in pictures.into_iter().enumerate() {
                     for (((x, y), drawn), texel) in strip.pixels().zip(picture).zip(&expected) {
                         let seen = drawn.written.then_some(i128::from(drawn.attributes[0]));
@@ -489,10 +506,10 @@ fn a_wall_of_64_texels_shows_no_opposite_border() {
     assert_eq!(picture[at].attributes[0], 63);
 }
 
-fn gouraud<Q: Quality>(name: &str, bound: f64, material: &Material<'_, Q>) {
+fn gouraud(name: &str, bound: f64, surface: Recorded<'_>) {
     let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
     for_all(name, 3000, cases, |(strip, triangle)| {
-        for ((x, y), drawn) in strip.pixels().zip(draw(strip, &triangle, material)) {
+        for ((x, y), drawn) in strip.pixels().zip(draw(strip, &triangle, surface)) {
             prop_assert_eq!(drawn.written, triangle.covers(x, y));
             for channel in if drawn.written { 2..5 } else { 0..0 } {
                 let (low, high) = tolerated(&triangle, &triangle.at(x, y), channel, bound);
@@ -516,8 +533,8 @@ fn gouraud<Q: Quality>(name: &str, bound: f64, material: &Material<'_, Q>) {
 
 #[test]
 fn gouraud_blends_colors_within_the_bound_for_6_000_triangles() {
-    gouraud("colours, QuarterPixel", 0.25, &Material::gouraud());
-    gouraud("colours, Exact", 0.02, &Material::gouraud().exact());
+    gouraud("colours, QuarterPixel", 0.25, (&Material::gouraud()).into());
+    gouraud("colours, Exact", 0.02, (&Material::gouraud().exact()).into());
 }
 
 #[test]
@@ -543,7 +560,7 @@ fn textured_within_range() {
             for clamp in [false, true] {
                 let (low, high) = triangle.sampled(attribute);
                 let within = (f64::from(low), f64::from(high));
-                for drawn in draw(strip, &triangle, &of_texture(&texture, clamp).affine()) {
+                for drawn in draw(strip, &triangle, of_texture::<Affine>(&texture, clamp)) {
                     let texel = i64::from(drawn.attributes[0]);
                     prop_assert!(!drawn.written || met(texel, 1 << log2, clamp, within));
                 }
@@ -607,13 +624,13 @@ fn pictures_of_4_texels_by_hand() {
     let strip = Strip::new(5, 1, 1);
     let fetch = |clamp| {
         let (texture, _) = chart.textures()[0];
-        let drawn = draw(strip, &triangle, &of_texture(&texture, clamp));
+        let drawn = draw(strip, &triangle, of_texture::<QuarterPixel>(&texture, clamp));
         drawn.iter().map(|drawn| drawn.attributes[0]).collect::<Vec<_>>()
     };
     assert_eq!(fetch(false), [0, 1, 0, 1, 0]);
     assert_eq!(fetch(true), [0, 1, 1, 1, 1]);
     let mut record = Record::blank(strip);
-    record.record::<fixel::Exact>(&triangle, Cull::Back, fixel::Inputs::Uv);
+    record.record::<Exact>(&triangle, Cull::Back, fixel::Inputs::Uv);
     let column = record.pixels.iter().map(|drawn| f64::from(drawn.attributes[0]) / UNIT);
     for (value, expected) in column.zip([0.5, 1.5, 2.5, 3.5, 4.5]) {
         assert!((value - expected).abs() < 0.02);
@@ -674,12 +691,12 @@ fn a_shader_that_paints_many_pixels_at_once_shows_what_its_color_says_1_000_case
         let [plain, each, at_once] = &mut pictures;
         let painted = |at_once| Painted { axis, at_once };
         plain
-            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, &Plain(painted(false)))
+            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, Surface::new(&Plain(painted(false))))
             .expect("it is within range");
-        each.draw::<Recording, NoDepth, _>(&triangle, Cull::None, &painted(false))
+        each.draw::<Recording, NoDepth, _>(&triangle, Cull::None, Surface::new(&painted(false)))
             .expect("it is within range");
         at_once
-            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, &painted(true))
+            .draw::<Recording, NoDepth, _>(&triangle, Cull::None, Surface::new(&painted(true)))
             .expect("it is within range");
         prop_assert_eq!(&plain.pixels, &each.pixels);
         prop_assert_eq!(&plain.pixels, &at_once.pixels);

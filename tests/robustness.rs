@@ -9,10 +9,11 @@ use common::{Canvas, Counting, Drawn, Met, Record, Recorder, Recording, Strip, f
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
+use fixel::material::Kind;
 use fixel::{
     Affine, Band, BigEndian, Camera, Cull, Depth16, DepthFormat, DisplayList, Exact, Inputs, Light, Lights,
-    Material, Mesh, MeshError, NoDepth, PerspectiveImage, PixelFormat, Pose, Quality, QuarterPixel,
-    RangeError, ScreenVertex, Shader, Texture, Turn, Vec3, Vertex,
+    ListMemory, Material, Mesh, MeshError, NoDepth, PerspectiveImage, PixelFormat, Pose, Quality,
+    QuarterPixel, RangeError, ScreenVertex, Surface, Texture, Turn, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::{Corner, Triangle};
@@ -102,23 +103,23 @@ const SPARE: usize = 70;
 /// What `draw_triangle` says, the pixels and the depths.
 type Outcome<P, D> = (Result<(), RangeError>, Vec<P>, Vec<D>);
 
-fn draw<F, D, S>(
+fn draw<'a, F, D, S>(
     (strip, row): (Strip, u32),
     blank: (F::Word, D::Word),
     vertices: &[ScreenVertex; 3],
     cull: Cull,
-    shader: &S,
+    surface: S,
 ) -> Outcome<F::Word, D::Word>
 where
     F: PixelFormat,
     D: DepthFormat,
-    S: Shader<F>,
+    S: Into<Surface<'a, F, D>>,
 {
     let (mut pixels, mut depth) = (vec![blank.0; strip.len() + SPARE], vec![blank.1; strip.len() + SPARE]);
     let mut band = Band::<F, D>::new(strip.size(), &mut pixels, &mut depth)
         .expect("the slices are long enough")
         .starting_at(row);
-    let result = fixel::draw_triangle(vertices, cull, shader, &mut band);
+    let result = fixel::draw_triangle(vertices, cull, surface, &mut band);
     (result, pixels, depth)
 }
 
@@ -130,7 +131,8 @@ fn recorded<Q: Quality>(
 ) -> Result<(), TestCaseError> {
     let blank = (Drawn::default(), Counting::CLEAR);
     let shader = Recorder::<Q>::new(inputs);
-    let (result, pixels, depth) = draw::<Recording, Counting, _>(target, blank, vertices, cull, &shader);
+    let (result, pixels, depth) =
+        draw::<Recording, Counting, _>(target, blank, vertices, cull, Surface::new(&shader));
     let good = vertices.iter().all(in_range);
     prop_assert_eq!(result.is_ok(), good);
     let strip = target.0;
@@ -196,10 +198,10 @@ fn triangles_of_any_bits_are_drawn_within_range_or_refused_30_000_cases() {
 }
 
 /// Every kind of material, in every quality, on every built-in format.
-fn on_all_formats<Q: Quality>(
+fn on_all_formats<K: Kind, Q: Quality>(
     target: (Strip, u32),
     vertices: &[ScreenVertex; 3],
-    material: &Material<'_, Q>,
+    material: &Material<'_, K, Q>,
 ) -> Result<(), TestCaseError> {
     let good = vertices.iter().all(in_range);
     let native = draw::<Rgb565, Depth16, _>(target, (0x1234, 0), vertices, Cull::None, material);
@@ -231,54 +233,69 @@ fn materials_on_triangles_of_any_bits_10_000_cases() {
     for_all("materials on vertices of any bits", 10_000, cases, |(target, vertices, kind, quality, size)| {
         let (width, height) = sizes[size];
         let texture = Texture::new(&texels[..1 << (width + height)], width, height);
-        let material = match kind {
-            0 => Material::flat(Rgb565::MAGENTA),
-            1 => Material::gouraud(),
-            2 => Material::textured(&texture),
-            _ => Material::clamped(&texture),
-        };
-        match quality {
-            0 => on_all_formats(target, &vertices, &material),
-            1 => on_all_formats(target, &vertices, &material.exact()),
-            _ => on_all_formats(target, &vertices, &material.affine()),
+        match kind {
+            0 => in_a_quality(quality, target, &vertices, Material::flat(Rgb565::MAGENTA)),
+            1 => in_a_quality(quality, target, &vertices, Material::gouraud()),
+            2 => in_a_quality(quality, target, &vertices, Material::textured(&texture)),
+            _ => in_a_quality(quality, target, &vertices, Material::clamped(&texture)),
         }
     });
+}
+
+fn in_a_quality(
+    quality: u8,
+    target: (Strip, u32),
+    vertices: &[ScreenVertex; 3],
+    material: Material<'_, impl Kind>,
+) -> Result<(), TestCaseError> {
+    match quality {
+        0 => on_all_formats(target, vertices, &material),
+        1 => on_all_formats(target, vertices, &material.exact()),
+        _ => on_all_formats(target, vertices, &material.affine()),
+    }
 }
 
 #[test]
 fn small_triangles_are_the_same_in_bands_of_one_row_20_000_cases() {
     let texels: Vec<u16> = (0..=u16::MAX).collect();
-    let lights = Lights::new([255; 3], &[]);
     let cases = (mesh_case(), 0..6_u8, 0..3_u8, any::<bool>());
     for_all("small triangles in bands", 20_000, cases, |(case, kind, quality, gray)| {
         let texture = Texture::new(&texels[..1 << 12], 6, 6);
-        let material = match kind {
-            0 => Material::flat(Rgb565::MAGENTA),
-            1 => Material::gouraud(),
-            2 => Material::textured(&texture),
-            3 => Material::clamped(&texture),
-            4 => Material::textured(&texture).lit(&lights),
-            _ => Material::clamped(&texture).lit(&lights),
-        };
         let mut vertices = case.triangle.0.map(common::screen_vertex);
         if gray {
             for vertex in &mut vertices {
                 vertex.color = [vertex.color[0]; 3];
             }
         }
-        match quality {
-            0 => in_bands(case.strip, &vertices, &material),
-            1 => in_bands(case.strip, &vertices, &material.exact()),
-            _ => in_bands(case.strip, &vertices, &material.affine()),
+        match kind {
+            0 => in_bands_and_a_quality(quality, case.strip, &vertices, Material::flat(Rgb565::MAGENTA)),
+            1 => in_bands_and_a_quality(quality, case.strip, &vertices, Material::gouraud()),
+            2 => in_bands_and_a_quality(quality, case.strip, &vertices, Material::textured(&texture)),
+            3 => in_bands_and_a_quality(quality, case.strip, &vertices, Material::clamped(&texture)),
+            4 => in_bands_and_a_quality(quality, case.strip, &vertices, Material::textured(&texture).lit()),
+            _ => in_bands_and_a_quality(quality, case.strip, &vertices, Material::clamped(&texture).lit()),
         }
     });
 }
 
-/// The whole strip, with and without depth, against every row for itself.
-fn in_bands<Q: Quality>(
+fn in_bands_and_a_quality(
+    quality: u8,
     strip: Strip,
     vertices: &[ScreenVertex; 3],
-    material: &Material<'_, Q>,
+    material: Material<'_, impl Kind>,
+) -> Result<(), TestCaseError> {
+    match quality {
+        0 => in_bands(strip, vertices, &material),
+        1 => in_bands(strip, vertices, &material.exact()),
+        _ => in_bands(strip, vertices, &material.affine()),
+    }
+}
+
+/// The whole strip, with and without depth, against every row for itself.
+fn in_bands<K: Kind, Q: Quality>(
+    strip: Strip,
+    vertices: &[ScreenVertex; 3],
+    material: &Material<'_, K, Q>,
 ) -> Result<(), TestCaseError> {
     on_all_formats((strip, strip.row), vertices, material)?;
     let target = |row: u32, height: u32| (Strip::new(strip.width, height, row), row);
@@ -441,23 +458,19 @@ fn meshes_poses_and_cameras_of_any_numbers_20_000_cases() {
         |(mesh, camera, pose, (strip, row), kind, quality, cull)| {
             let mesh = Mesh::try_new(&mesh.0, &mesh.1).expect("the indices are in range");
             let texture = Texture::new(&texels, 8, 8);
-            let material = match kind {
-                0 => Material::flat(Rgb565::MAGENTA),
-                1 => Material::gouraud(),
-                2 => Material::textured(&texture),
-                _ => Material::clamped(&texture),
-            }
-            .cull(CULLS[cull]);
+            // Flat, Gouraud, repeated and clamped: see `surface`.
+            let (kind, cull) = ([0, 1, 10, 4][usize::from(kind)], CULLS[cull]);
+            let surface = match quality {
+                0 => surface::<QuarterPixel, _>(kind, &texture, cull),
+                1 => surface::<Exact, _>(kind, &texture, cull),
+                _ => surface::<Affine, _>(kind, &texture, cull),
+            };
             let (mut pixels, mut depth) =
                 (vec![0x1234_u16; strip.len() + SPARE], vec![0_u16; strip.len() + SPARE]);
             let mut band = Band::<Rgb565, Depth16>::new(strip.size(), &mut pixels, &mut depth)
                 .expect("the slices are long enough")
                 .starting_at(row);
-            match quality {
-                0 => camera.draw(&mesh, &pose, &material, &mut band),
-                1 => camera.draw(&mesh, &pose, &material.exact(), &mut band),
-                _ => camera.draw(&mesh, &pose, &material.affine(), &mut band),
-            }
+            camera.draw(&mesh, &pose, surface, &mut band);
             seen.set(seen.get() + u32::from(depth.iter().any(|depth| *depth > 0)));
             prop_assert!(pixels[strip.len()..].iter().all(|word| *word == 0x1234), "pixels past the target");
             prop_assert!(depth[strip.len()..].iter().all(|word| *word == 0), "depths past the target");
@@ -490,7 +503,11 @@ fn a_canvas_of_nothing_takes_a_triangle() {
     let triangle = Triangle([corner(-500, -500), corner(-500, 900), corner(900, -500)]);
     let mut canvas = Canvas::<Drawn, u16>::new::<Depth16>(Strip::new(0, 0, 0));
     canvas
-        .draw::<Recording, Depth16, _>(&triangle, Cull::None, &Recorder::<Exact>::new(Inputs::Uv))
+        .draw::<Recording, Depth16, _>(
+            &triangle,
+            Cull::None,
+            Surface::new(&Recorder::<Exact>::new(Inputs::Uv)),
+        )
         .expect("the triangle is within range");
 }
 
@@ -544,18 +561,29 @@ fn triangle_of_any_size() -> BoxedStrategy<((Strip, u32), [ScreenVertex; 3])> {
 }
 
 /// Every loop that there is: one of 14 surfaces.
-fn surface<'a>(kind: u8, texture: &Texture<'a>, lights: &'a Lights<'a>) -> Material<'a> {
+fn surface<'a, Q: Quality, D: DepthFormat>(
+    kind: u8,
+    texture: &Texture<'a>,
+    cull: Cull,
+) -> Surface<'a, Rgb565, D> {
+    fn of<'a, Q: Quality, D: DepthFormat>(
+        material: Material<'a, impl Kind>,
+        cull: Cull,
+    ) -> Surface<'a, Rgb565, D> {
+        (&material.quality::<Q>().cull(cull)).into()
+    }
+    let textured = Material::textured(texture);
     match kind {
-        0 => Material::flat(Rgb565::MAGENTA),
-        1 => Material::gouraud(),
-        2 => Material::gouraud().lit(lights).faceted(),
-        3 => Material::flat(Rgb565::YELLOW).lit(lights).two_sided(),
-        4 => Material::clamped(texture),
-        5 => Material::clamped(texture).lit(lights),
-        6 => Material::textured(texture).lit(lights).two_sided().texture_scale(3),
-        7 => Material::textured(texture).lit(lights).faceted().texture_scale(8),
-        8 => Material::textured(texture).lit(lights),
-        kind => Material::textured(texture).texture_scale([0, 1, 5, 8, u8::MAX][usize::from(kind) % 5]),
+        0 => of::<Q, D>(Material::flat(Rgb565::MAGENTA), cull),
+        1 => of::<Q, D>(Material::gouraud(), cull),
+        2 => of::<Q, D>(Material::gouraud().lit().faceted(), cull),
+        3 => of::<Q, D>(Material::flat(Rgb565::YELLOW).lit().two_sided(), cull),
+        4 => of::<Q, D>(Material::clamped(texture), cull),
+        5 => of::<Q, D>(Material::clamped(texture).lit(), cull),
+        6 => of::<Q, D>(textured.lit().two_sided().texture_scale(3), cull),
+        7 => of::<Q, D>(textured.lit().faceted().texture_scale(8), cull),
+        8 => of::<Q, D>(textured.lit(), cull),
+        kind => of::<Q, D>(textured.texture_scale([0, 1, 5, 8, u8::MAX][usize::from(kind) % 5]), cull),
     }
 }
 
@@ -563,21 +591,13 @@ const SURFACES: u8 = 14;
 /// log₂ of the sides of textures: those for which there is a loop, others, and one that is not packed.
 const TEXTURES: [(u32, u32); 8] = [(6, 6), (5, 5), (0, 0), (8, 8), (10, 6), (3, 5), (1, 8), (4, 8)];
 
-fn overflows_nowhere<Q: Quality>(
+fn overflows_nowhere<D: DepthFormat>(
     target: (Strip, u32),
     vertices: &[ScreenVertex; 3],
-    material: &Material<'_, Q>,
-    with_depth: bool,
+    surface: Surface<'_, Rgb565, D>,
 ) -> Result<(), TestCaseError> {
-    let (result, pixels) = if with_depth {
-        let (result, pixels, _) =
-            draw::<Rgb565, Depth16, _>(target, (0x1234, 0), vertices, Cull::None, material);
-        (result, pixels)
-    } else {
-        let (result, pixels, _) =
-            draw::<Rgb565, NoDepth, _>(target, (0x1234, ()), vertices, Cull::None, material);
-        (result, pixels)
-    };
+    let blank = (0x1234, D::CLEAR);
+    let (result, pixels, _) = draw::<Rgb565, D, _>(target, blank, vertices, Cull::None, surface);
     prop_assert!(result.is_ok());
     prop_assert!(pixels[target.0.len()..].iter().all(|word| *word == 0x1234), "pixels past the target");
     Ok(())
@@ -586,7 +606,6 @@ fn overflows_nowhere<Q: Quality>(
 #[test]
 fn triangles_of_numbers_of_all_sizes_overflow_nowhere_200_000_cases() {
     let texels: Vec<u16> = (0..=u16::MAX).collect();
-    let lights = Lights::new([255; 3], &[]);
     let how = (0..SURFACES, 0..TEXTURES.len(), 0..3_u8, any::<bool>(), any::<bool>());
     let cases = (triangle_of_any_size(), how);
     for_all("triangles of numbers of all sizes", 200_000, cases, |((target, mut vertices), how)| {
@@ -596,13 +615,27 @@ fn triangles_of_numbers_of_all_sizes_overflow_nowhere_200_000_cases() {
         if gray {
             vertices.iter_mut().for_each(|vertex| vertex.color = [vertex.color[0]; 3]);
         }
-        let material = surface(kind, &texture, &lights);
-        match quality {
-            0 | 1 => overflows_nowhere(target, &vertices, &material, with_depth),
-            2 if gray => overflows_nowhere(target, &vertices, &material.affine(), with_depth),
-            _ => overflows_nowhere(target, &vertices, &material.exact(), with_depth),
+        if with_depth {
+            let surface = quality_of_any_size::<Depth16>(quality, gray, kind, &texture);
+            overflows_nowhere(target, &vertices, surface)
+        } else {
+            let surface = quality_of_any_size::<NoDepth>(quality, gray, kind, &texture);
+            overflows_nowhere(target, &vertices, surface)
         }
     });
+}
+
+fn quality_of_any_size<'a, D: DepthFormat>(
+    quality: u8,
+    gray: bool,
+    kind: u8,
+    texture: &Texture<'a>,
+) -> Surface<'a, Rgb565, D> {
+    match quality {
+        0 | 1 => surface::<QuarterPixel, D>(kind, texture, Cull::Back),
+        2 if gray => surface::<Affine, D>(kind, texture, Cull::Back),
+        _ => surface::<Exact, D>(kind, texture, Cull::Back),
+    }
 }
 
 /// An `f32` of any size, as [`of_any_size`].
@@ -749,19 +782,22 @@ fn scenes_of_numbers_of_all_sizes_overflow_nowhere_30_000_cases() {
             let lights = Lights::try_new([255; 3], &lights).expect("few enough");
             let (log2_width, log2_height) = TEXTURES[size];
             let texture = Texture::new(&texels[..1 << (log2_width + log2_height)], log2_width, log2_height);
-            let material = surface(kind, &texture, &lights).cull(CULLS[cull]);
+            let (view, cull) = (camera.lit_by(&lights), CULLS[cull]);
+            let quarter_pixel = surface::<QuarterPixel, Depth16>(kind, &texture, cull);
+            let surface = match quality {
+                0 => quarter_pixel,
+                1 => surface::<Exact, _>(kind, &texture, cull),
+                _ => surface::<Affine, _>(kind, &texture, cull),
+            };
             let words = (width * height) as usize;
             let (mut pixels, mut depth) = (vec![0x1234_u16; words + SPARE], vec![0_u16; words + SPARE]);
             let mut band = Band::<Rgb565, Depth16>::new(Size::new(width, height), &mut pixels, &mut depth)
                 .expect("the slices are long enough")
                 .starting_at(row);
-            match quality {
-                0 => camera.draw(&mesh, &pose, &material, &mut band),
-                1 => camera.draw(&mesh, &pose, &material.exact(), &mut band),
-                _ => camera.draw(&mesh, &pose, &material.affine(), &mut band),
-            }
-            let mut list = DisplayList::<48, 32, 1>::new();
-            let _ = camera.draw(&mesh, &pose, &material, &mut list);
+            view.draw(&mesh, &pose, surface, &mut band);
+            let mut memory = ListMemory::<48, 32>::new();
+            let mut list = DisplayList::<Rgb565, Depth16, 1>::new(&mut memory);
+            let _ = view.draw(&mesh, &pose, quarter_pixel, &mut list);
             list.sort_back_to_front();
             list.render(row, &mut band);
             seen.set(seen.get() + u32::from(depth.iter().any(|depth| *depth > 0)));

@@ -18,8 +18,8 @@ use fixel::embedded_graphics::prelude::{Point, Size};
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U10F22};
 use fixel::shapes::{Shape, cube, grid, icosphere, torus};
 use fixel::{
-    Band, Camera, Cull, Exact, Inputs, Light, Lights, Material, Mesh, Pose, Quaternion, Shader, Stats, Turn,
-    Varying, Vec3, Vertex,
+    Band, Camera, Cull, Exact, Inputs, Light, Lights, Material, Mesh, Pose, Quaternion, Shader, Stats,
+    Surface, Turn, Varying, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::view::{Lens, Placement};
@@ -182,7 +182,7 @@ fn draw(eye: &Eye, pose: &Pose, mesh: &Mesh<'_>, cull: Cull, stats: &mut Stats) 
     let mut band = Band::<Recording, Counting>::new(SCREEN, &mut drawn.pixels, &mut drawn.depth)
         .expect("the sizes agree");
     let shader = Numbered::<Exact> { number: 0, cull, quality: PhantomData };
-    eye.camera.draw_counted(mesh, pose, &shader, &mut band, stats);
+    eye.camera.draw_counted(mesh, pose, Surface::new(&shader), &mut band, stats);
     drawn
 }
 
@@ -409,7 +409,7 @@ fn a_quad_that_a_matrix_stretches_into_the_picture_is_drawn() {
         let mut band = Band::<Recording, Counting>::new(screen.size(), &mut drawn.pixels, &mut drawn.depth)
             .expect("the sizes agree");
         let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
-        camera.draw(&mesh, &pose, &shader, &mut band);
+        camera.draw(&mesh, &pose, Surface::new(&shader), &mut band);
         // 32 px of half a screen are tan 30° of a half; from x = 2.4 - 1.9 to the right border, 0.2 up and down.
         let focal = 32.0 * 3.0_f64.sqrt();
         let (left, half) = (32.0 + focal * near_side / 2.0, focal * 0.2 / 2.0);
@@ -433,7 +433,7 @@ fn a_pillar_beside_the_picture_is_left_out_whole() {
         let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
         let mut stats = Stats::default();
         let pose = pillar.at(Vec3::lit(x, 0.0, -10.0));
-        camera.draw_counted(&CUBE.mesh(), &pose, &shader, &mut band, &mut stats);
+        camera.draw_counted(&CUBE.mesh(), &pose, Surface::new(&shader), &mut band, &mut stats);
         assert_eq!(stats.meshes_out_of_sight, u32::from(!is_seen), "at {x}");
         assert_eq!(drawn.iter().any(|(_, _, met)| met.times > 0), is_seen, "at {x}");
     }
@@ -486,7 +486,7 @@ fn faces_of_stretched_and_mirrored_cubes_have_the_light_of_their_outer_sides_in_
             Source::Direction(direction) => Light::directional(direction, [255; 3]),
         }];
         let lights = Lights::new([0; 3], &lights);
-        let white = Material::flat(Rgb565::new(31, 63, 31)).lit(&lights).faceted().exact();
+        let white = Material::flat(Rgb565::new(31, 63, 31)).lit().faceted().exact();
         let (material, two_sided) = match cull {
             0 => (white, false),
             1 => (white.cull(Cull::Front), false),
@@ -495,7 +495,7 @@ fn faces_of_stretched_and_mirrored_cubes_have_the_light_of_their_outer_sides_in_
         let mut drawn = Record::blank(STRIP);
         let mut band = Band::<Recording, Counting>::new(SCREEN, &mut drawn.pixels, &mut drawn.depth)
             .expect("the sizes agree");
-        eye.camera.draw(&mesh, &pose, &material, &mut band);
+        eye.camera.lit_by(&lights).draw(&mesh, &pose, &material, &mut band);
         let exact = view(&eye.camera, &pose, eye.orthographic);
         let hand = exact.handedness().signum() * if cull == 1 { -1.0 } else { 1.0 };
         let facets: Vec<_> = model
@@ -595,12 +595,12 @@ fn one_byte_indices_and_parts_draw_the_same_and_a_texture_scale_multiplies_in_30
                 .expect("the sizes agree");
             let shader = Numbered::<Exact> { number: 0, cull: Cull::Back, quality: PhantomData };
             for mesh in [wide.part(0, cut), narrow.part(cut, usize::MAX)] {
-                eye.camera.draw(&mesh, &pose, &shader, &mut band);
+                eye.camera.draw(&mesh, &pose, Surface::new(&shader), &mut band);
             }
             prop_assert!(picture == parts);
             let mut band = Band::<Recording, Counting>::new(SCREEN, &mut scaled.pixels, &mut scaled.depth)
                 .expect("the sizes agree");
-            eye.camera.draw(&wide, &pose, &Scaled(shader, log2), &mut band);
+            eye.camera.draw(&wide, &pose, Surface::new(&Scaled(shader, log2)), &mut band);
             // Planes hold scaled coordinates, so these are exacter than what is multiplied at the end: both are within 0.02 of the
             // change over a pixel. The latter are rounded before, and lean by up to 21 + (160 + 120)/4 units where surfaces are straight.
             let drawn = picture.iter().filter(|(_, _, met)| met.times > 0);

@@ -37,8 +37,8 @@ use fixel::embedded_graphics::prelude::Size;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U10F22};
 use fixel::shapes::{Shape, cube, grid, icosphere, quad, torus, uv_sphere};
 use fixel::{
-    Band, Camera, Cull, DisplayList, Exact, Mesh, Pose, Quality, QuarterPixel, Quaternion, Stats, Turn, Vec3,
-    Vertex,
+    Band, Camera, Cull, DisplayList, Exact, ListMemory, Mesh, Pose, Quality, QuarterPixel, Quaternion, Stats,
+    Surface, Turn, Vec3, Vertex,
 };
 use proptest::prelude::*;
 use reference::view::{Facet, Placement, View};
@@ -287,7 +287,7 @@ fn draw_all<Q: Quality>(
     let mut band = Band::<Recording, Counting>::new(SCREEN.size(), &mut record.pixels, &mut record.depth)
         .expect("the sizes agree");
     let shader = Numbered::<Q> { number: 0, cull, quality: PhantomData };
-    camera.draw_counted(mesh, pose, &shader, &mut band, stats);
+    camera.draw_counted(mesh, pose, Surface::new(&shader), &mut band, stats);
     record
 }
 
@@ -297,7 +297,7 @@ fn draw_parts<Q: Quality>(camera: &Camera, mesh: &Mesh<'_>, pose: &Pose, cull: C
         .expect("the sizes agree");
     for number in 0..mesh.triangles().len() {
         let shader = Numbered::<Q> { number: number as i32, cull, quality: PhantomData };
-        camera.draw(&mesh.part(number, number + 1), pose, &shader, &mut band);
+        camera.draw(&mesh.part(number, number + 1), pose, Surface::new(&shader), &mut band);
     }
     record
 }
@@ -670,7 +670,13 @@ fn lone(camera: &Camera, strip: Strip, pose: &Pose, corners: &[Vertex; 3]) -> (R
     let mut band = Band::<Recording, Counting>::new(strip.size(), &mut record.pixels, &mut record.depth)
         .expect("the sizes agree");
     let shader = Numbered::<QuarterPixel> { number: 0, cull: Cull::None, quality: PhantomData };
-    camera.draw_counted(&Mesh::new(corners, &[[0, 1, 2]]), pose, &shader, &mut band, &mut stats);
+    camera.draw_counted(
+        &Mesh::new(corners, &[[0, 1, 2]]),
+        pose,
+        Surface::new(&shader),
+        &mut band,
+        &mut stats,
+    );
     let facet = view(camera, pose, camera.is_orthographic()).facet(corners.each_ref().map(position));
     (record, facet, stats)
 }
@@ -731,7 +737,7 @@ fn a_floor_from_a_near_plane_of_almost_nothing_at_a_scale_of_512() {
                     cull: Cull::None,
                     quality: PhantomData,
                 };
-                camera.draw(&mesh.part(triangle, triangle + 1), &pose, &shader, &mut band);
+                camera.draw(&mesh.part(triangle, triangle + 1), &pose, Surface::new(&shader), &mut band);
                 let mut measured = Measured::default();
                 for (pixel, drawn, met) in record.iter() {
                     let depth = facet.depth(centre(pixel));
@@ -869,7 +875,7 @@ fn clipped_slivers_cover_each_pixel_once_and_what_neighbours_leave_in_40_000_cas
                     .expect("the sizes agree");
             let mut stats = Stats::default();
             let shader = Numbered::<QuarterPixel> { number: 0, cull, quality: PhantomData };
-            camera.draw_counted(mesh, &pose, &shader, &mut band, &mut stats);
+            camera.draw_counted(mesh, &pose, Surface::new(&shader), &mut band, &mut stats);
             (record, stats)
         };
         // Each alone: no pixel twice, from a list the same, and what is front or back of it is all of it.
@@ -890,8 +896,9 @@ fn clipped_slivers_cover_each_pixel_once_and_what_neighbours_leave_in_40_000_cas
                 prop_assert_eq!(front.depth[i].times + back.depth[i].times, met.times, "{:?}", pixel);
             }
             let shader = Numbered::<QuarterPixel> { number: 0, cull: Cull::None, quality: PhantomData };
-            let mut list = DisplayList::<40, 20, 1, _, Recording>::new();
-            camera.draw(&triangle, &pose, &shader, &mut list).expect("there is room");
+            let mut memory = ListMemory::<40, 20>::new();
+            let mut list = DisplayList::<Recording, Counting, 1>::new(&mut memory);
+            camera.draw(&triangle, &pose, Surface::new(&shader), &mut list).expect("there is room");
             let mut listed = Record::blank(strip);
             for rows in 0..8 {
                 let range = rows * 5 * 48..(rows + 1) * 5 * 48;
@@ -1022,7 +1029,13 @@ fn no_visible_triangle_is_left_out_at_any_scale_and_near_distance_in_30_000_case
             .starting_at(strip.row);
         let shader = Numbered::<QuarterPixel> { number: 0, cull: Cull::None, quality: PhantomData };
         let mut stats = Stats::default();
-        camera.draw_counted(&Mesh::new(&corners, &[[0, 1, 2]]), &pose, &shader, &mut band, &mut stats);
+        camera.draw_counted(
+            &Mesh::new(&corners, &[[0, 1, 2]]),
+            &pose,
+            Surface::new(&shader),
+            &mut band,
+            &mut stats,
+        );
 
         let facet = view(&camera, &pose, close.orthographic).facet(corners.each_ref().map(position));
         // As the crate states it: w in 2^-38 and less, as a mesh has it that is larger than 1.

@@ -1,8 +1,8 @@
 //! A display on a simulated bus with a DMA channel, in virtual time.
 
-use std::cell::Cell;
 use std::ops::Deref;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use embedded_dma::ReadBuffer;
 use fixel::embedded_graphics::pixelcolor::Rgb565;
@@ -12,19 +12,19 @@ use fixel::{Band, BigEndian, DepthFormat};
 
 /// Virtual time, in cycles. The bus, the shaders and who draws share it.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Clock(Rc<Cell<u64>>);
+pub(crate) struct Clock(Arc<AtomicU64>);
 
 impl Clock {
     pub(crate) fn now(&self) -> u64 {
-        self.0.get()
+        self.0.load(Ordering::Relaxed)
     }
 
     pub(crate) fn pass(&self, cycles: u64) {
-        self.0.set(self.0.get() + cycles);
+        self.0.fetch_add(cycles, Ordering::Relaxed);
     }
 
     pub(crate) fn wait_until(&self, time: u64) {
-        self.0.set(self.0.get().max(time));
+        self.0.fetch_max(time, Ordering::Relaxed);
     }
 }
 

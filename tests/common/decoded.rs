@@ -2,7 +2,8 @@
 //! of a picture tell texture coordinates.
 
 use fixel::embedded_graphics::pixelcolor::Rgb565;
-use fixel::{Cull, Depth16, NoDepth, Shader, Texture};
+use fixel::material::Kind;
+use fixel::{Cull, Depth16, Material, NoDepth, Quality, Texture};
 use proptest::prelude::*;
 
 use super::generate::{Family as Shape, GUARD_BAND, Place, place, places};
@@ -88,16 +89,13 @@ pub(crate) const RATIOS: [f64; 8] = [1.0, 1.02, 1.3, 3.0, 12.0, 50.0, 200.0, 655
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Surface {
     Plain,
-    /// By the type that can be nothing else.
-    Textured,
     /// In full light whose channels are the same.
     Gray,
     /// In full light whose channels differ by less than is seen.
     Colored,
 }
 
-pub(crate) const SURFACES: [Surface; 4] =
-    [Surface::Plain, Surface::Textured, Surface::Gray, Surface::Colored];
+pub(crate) const SURFACES: [Surface; 3] = [Surface::Plain, Surface::Gray, Surface::Colored];
 
 /// A triangle to decode.
 #[derive(Clone, Copy, Debug)]
@@ -287,18 +285,18 @@ pub(crate) fn colors() -> impl Strategy<Value = [[i32; 3]; 3]> {
 }
 
 /// The words of a triangle. What is hidden is behind something as near as can be, and stays 0.
-pub(crate) fn words<S: Shader<Rgb565>>(case: &Case, shader: &S) -> Vec<u16> {
+pub(crate) fn words<K: Kind, Q: Quality>(case: &Case, material: &Material<'_, K, Q>) -> Vec<u16> {
     let in_range = "the triangle is within range";
     if !case.depth {
         let mut canvas = Canvas::<u16, ()>::new::<NoDepth>(case.strip);
-        canvas.draw::<Rgb565, NoDepth, _>(&case.triangle, Cull::None, shader).expect(in_range);
+        canvas.draw::<Rgb565, NoDepth, _>(&case.triangle, Cull::None, material).expect(in_range);
         return canvas.pixels;
     }
     let mut canvas = Canvas::<u16, u16>::new::<Depth16>(case.strip);
     for ((x, y), depth) in case.strip.pixels().zip(&mut canvas.depth) {
         *depth = if case.hides(x, y) { u16::MAX } else { 0 };
     }
-    canvas.draw::<Rgb565, Depth16, _>(&case.triangle, Cull::None, shader).expect(in_range);
+    canvas.draw::<Rgb565, Depth16, _>(&case.triangle, Cull::None, material).expect(in_range);
     canvas.pixels
 }
 

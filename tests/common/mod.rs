@@ -16,7 +16,7 @@ use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::prelude::Size;
 use fixel::fixed::types::{I12F4, I16F16, U1F31, U8F8};
 use fixel::{
-    Band, Cull, DepthFormat, Inputs, PixelFormat, Quality, RangeError, ScreenVertex, Shader, Varying,
+    Band, Cull, DepthFormat, Inputs, PixelFormat, Quality, RangeError, ScreenVertex, Shader, Surface, Varying,
 };
 use proptest::strategy::Strategy;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
@@ -128,7 +128,7 @@ impl DepthFormat for Counting {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Recorder<Q> {
     inputs: Inputs,
-    quality: PhantomData<Q>,
+    quality: PhantomData<fn() -> Q>,
 }
 
 impl<Q> Recorder<Q> {
@@ -197,21 +197,21 @@ impl<P: Clone + Default, D: Clone> Canvas<P, D> {
     }
 
     /// Draws one triangle into it.
-    pub(crate) fn draw<F, G, S>(
+    pub(crate) fn draw<'a, F, G, S>(
         &mut self,
         triangle: &Triangle,
         cull: Cull,
-        shader: &S,
+        surface: S,
     ) -> Result<(), RangeError>
     where
         F: PixelFormat<Word = P>,
         G: DepthFormat<Word = D>,
-        S: Shader<F>,
+        S: Into<Surface<'a, F, G>>,
     {
         let mut band = Band::<F, G>::new(self.strip.size(), &mut self.pixels, &mut self.depth)
             .expect("the sizes agree")
             .starting_at(self.strip.row);
-        fixel::draw_triangle(&triangle.0.map(screen_vertex), cull, shader, &mut band)
+        fixel::draw_triangle(&triangle.0.map(screen_vertex), cull, surface, &mut band)
     }
 }
 
@@ -232,7 +232,7 @@ impl Record {
 
     /// Draws a triangle that is within the guard band.
     pub(crate) fn record<Q: Quality>(&mut self, triangle: &Triangle, cull: Cull, inputs: Inputs) {
-        self.draw::<Recording, Counting, _>(triangle, cull, &Recorder::<Q>::new(inputs))
+        self.draw::<Recording, Counting, _>(triangle, cull, Surface::new(&Recorder::<Q>::new(inputs)))
             .expect("the triangle is within range");
     }
 

@@ -2,12 +2,14 @@
 
 use fixel::embedded_graphics::prelude::*;
 use fixel::fixed::types::{I2F14, I16F16, U10F22};
+use fixel::material::Kind;
 use fixel::shapes::{self, Shape};
 use fixel::{
-    Camera, Cull, DisplayList, Light, Lights, Material, Mesh, PixelFormat, Pose, Quality, Texture, Turn,
-    Vec3, Vertex,
+    Camera, Canvas, Cull, DepthFormat, Light, Lights, Material, Mesh, PixelFormat, Pose, Quality, Surface,
+    Texture, Turn, Vec3, Vertex,
 };
 use proptest::prelude::*;
+use std::marker::PhantomData;
 
 static TORUS: Shape<63, 96> = shapes::torus_textured(1.0, 0.45, 8, 6, [256, 64]);
 static BALL: Shape<12, 20> = shapes::icosphere(0.8, 1);
@@ -41,26 +43,49 @@ static SUN: [Light; 2] = [
     Light::directional(Vec3::lit(-0.4, -0.6, -0.7), [208, 190, 150]),
     Light::point(Vec3::lit(1.0, 1.0, -1.0), [90, 20, 200], I16F16::lit("3")),
 ];
-static LIGHTS: Lights = Lights::new([30, 40, 50], &SUN);
+/// The lights of all scenes.
+pub(crate) static LIGHTS: Lights = Lights::new([30, 40, 50], &SUN);
 
 /// How many materials there are.
 pub(crate) const MATERIALS: usize = 8;
 
-/// One of each kind.
-pub(crate) fn materials<Q: Quality>() -> [Material<'static, Q>; MATERIALS] {
+/// What makes one thing of a material of any kind.
+pub(crate) trait Maker {
+    type Made;
+    fn make<K: Kind>(&self, material: Material<'static, K>) -> Self::Made;
+}
+
+/// What is made of the materials, of which there is one in each way to draw.
+pub(crate) fn of_materials<M: Maker>(maker: &M) -> [M::Made; MATERIALS] {
     let texture = Texture::new(&TEXELS, 4, 4);
     let textured = Material::textured(&texture);
     [
-        Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_GOLD),
-        textured.cull(Cull::None),
-        Material::gouraud(),
-        Material::gouraud().lit(&LIGHTS),
-        textured.lit(&LIGHTS),
-        textured.texture_scale(1).lit(&LIGHTS).faceted().two_sided(),
-        Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_TEAL).lit(&LIGHTS).faceted(),
-        textured,
+        maker.make(Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_GOLD)),
+        maker.make(textured.cull(Cull::None)),
+        maker.make(Material::gouraud()),
+        maker.make(Material::gouraud().lit()),
+        maker.make(textured.lit()),
+        maker.make(textured.texture_scale(1).lit().faceted().two_sided()),
+        maker.make(Material::flat(fixel::embedded_graphics::pixelcolor::Rgb565::CSS_TEAL).lit().faceted()),
+        maker.make(textured),
     ]
-    .map(Material::quality)
+}
+
+/// A surface of each material, in a quality.
+pub(crate) type Surfaces<F, D> = [Surface<'static, F, D>; MATERIALS];
+
+struct InQuality<Q, F, D>(PhantomData<(Q, F, D)>);
+
+impl<Q: Quality, F: PixelFormat, D: DepthFormat> Maker for InQuality<Q, F, D> {
+    type Made = Surface<'static, F, D>;
+
+    fn make<K: Kind>(&self, material: Material<'static, K>) -> Surface<'static, F, D> {
+        (&material.quality::<Q>()).into()
+    }
+}
+
+pub(crate) fn surfaces<Q: Quality, F: PixelFormat, D: DepthFormat>() -> Surfaces<F, D> {
+    of_materials(&InQuality::<Q, F, D>(PhantomData))
 }
 
 /// One call of `Camera::draw`, by numbers.
@@ -86,14 +111,15 @@ impl Draw {
         camera.viewport(if self.inset { Point::new(3, 5) } else { Point::zero() })
     }
 
-    /// Into a list.
-    pub(crate) fn add<const V: usize, const T: usize, const D: usize, Q: Quality, F: PixelFormat>(
+    /// Into a list or a band.
+    pub(crate) fn draw<'a, C: Canvas<'a>>(
         &self,
         screen: Size,
-        materials: &'static [Material<'static, Q>; MATERIALS],
-        list: &mut DisplayList<'static, V, T, D, Material<'static, Q>, F>,
-    ) -> Result<(), fixel::CapacityError> {
-        self.camera(screen).draw(&meshes()[self.mesh], &self.pose, &materials[self.material], list)
+        surfaces: &Surfaces<C::Format, C::Depth>,
+        canvas: &mut C,
+    ) -> C::Output {
+        let (camera, mesh) = (self.camera(screen), &meshes()[self.mesh]);
+        camera.lit_by(&LIGHTS).draw(mesh, &self.pose, surfaces[self.material], canvas)
     }
 }
 

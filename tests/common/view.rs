@@ -106,7 +106,7 @@ impl Model {
 pub(crate) struct Numbered<Q> {
     pub(crate) number: i32,
     pub(crate) cull: fixel::Cull,
-    pub(crate) quality: PhantomData<Q>,
+    pub(crate) quality: PhantomData<fn() -> Q>,
 }
 
 impl<Q: Quality> Shader<Recording> for Numbered<Q> {
