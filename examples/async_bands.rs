@@ -26,7 +26,7 @@ const ROWS: u32 = 16;
 const WORDS: usize = (SCREEN.width * ROWS) as usize;
 
 type Pixels = BigEndian<Rgb565>;
-type Frame<'a> = DisplayList<'a, 32, 16, 1, Material<'a>, Pixels>;
+type Frame<'a> = DisplayList<'a, Pixels, Depth16, 1>;
 
 /// A display in the style of `lcd-async`: pixels are drawn elsewhere, and sent as bytes.
 struct Display<Spi> {
@@ -129,18 +129,18 @@ const FLOOR: Mesh = Mesh::new(
     &[[0, 1, 2], [0, 2, 3]],
 );
 
-fn record<'a>(checks: &'a Material<'a>, list: &mut Frame<'a>) -> Result<(), CapacityError> {
+fn record(list: &mut Frame<'_>) -> Result<(), CapacityError> {
     let camera = Camera::perspective(Turn::from_degrees(60), SCREEN)
         .at(Vec3::lit(0.0, 1.2, 0.0))
         .look_at(Vec3::lit(0.0, 0.0, -2.2), Vec3::lit(0.0, 1.0, 0.0));
     let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(20)).at(Vec3::lit(0.0, 0.0, -3.0));
-    camera.draw(&FLOOR, &pose, checks, list)
+    camera.draw(&FLOOR, &pose, &Material::textured(&CHECKS), list)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let checks = Material::textured(&CHECKS);
-    let mut list = Frame::new();
-    record(&checks, &mut list)?;
+    let mut vertices_and_triangles = ListMemory::<32, 16>::new();
+    let mut list = Frame::new(&mut vertices_and_triangles);
+    record(&mut list)?;
 
     let memory = || -> &'static mut [u16] { Box::leak(Box::new([0; WORDS])) }; // on a board from a `StaticCell`
     let clock = Clock::default();

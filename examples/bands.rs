@@ -50,7 +50,7 @@ fn counted() -> Result<Vec<Line>, Box<dyn Error>> {
 }
 
 /// The picture in bands of some height.
-fn drawn(list: &s4::List, rows: u32) -> Result<Vec<u16>, Box<dyn Error>> {
+fn drawn(list: &s4::List<'_>, rows: u32) -> Result<Vec<u16>, Box<dyn Error>> {
     let words = (s4::SIZE.width * rows) as usize;
     let (mut pixels, mut depth) = (vec![0; words], vec![0; words]);
     let mut band = bench::Deep::new(Size::new(s4::SIZE.width, rows), &mut pixels, &mut depth)?;
@@ -67,7 +67,8 @@ fn run(directory: &Path) -> Result<(), Box<dyn Error>> {
     let (mut pixels, mut depth) = (vec![0; s4::PIXELS], vec![0; s4::PIXELS]);
     let mut frame = bench::Deep::new(s4::SIZE, &mut pixels, &mut depth)?;
     s4::draw(&mut frame);
-    let mut list = s4::List::new();
+    let mut memory = s4::Memory::new();
+    let mut list = s4::List::new(&mut memory);
     s4::record(&mut list)?;
     let [vertices, triangles, draws] = list.lengths();
     println!("240 x 320 with depth: {triangles} triangles with {vertices} vertices in {draws} draws");

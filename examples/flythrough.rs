@@ -18,9 +18,10 @@ mod walls;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_5X7};
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*, text::Text};
 use fixel::fixed::types::I16F16;
+use fixel::material::LitTextured;
 use fixel::prelude::*;
 use fixel::shapes::{self, Counts, Shape};
-use fixel::{Stats, TextureError};
+use fixel::{Stats, Surface, TextureError};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -148,8 +149,8 @@ fn sky() -> Vec<Vertex> {
 }
 
 /// A picture on a surface in the light.
-fn lit(picture: &picture::Picture) -> Result<Material<'_>, TextureError> {
-    Ok(Material::textured(&picture.texture()?).lit(&LIGHTS))
+fn lit(picture: &picture::Picture) -> Result<Material<'_, LitTextured>, TextureError> {
+    Ok(Material::textured(&picture.texture()?).lit())
 }
 
 struct Scene {
@@ -186,11 +187,12 @@ impl Scene {
         band.clear_depth();
         let mut stats = Stats::default();
         let camera = Camera::perspective(Turn::from_degrees(62), SIZE).near(0.125).pose(flight(frame));
-        let mut draw = |mesh: Mesh<'_>, pose: Pose, material: Material<'_>| {
-            camera.draw_counted(&mesh, &pose, &material, band, &mut stats);
+        let view = camera.lit_by(&LIGHTS);
+        let mut draw = |mesh: Mesh<'_>, pose: Pose, surface: Surface<'_, Rgb565, Depth16>| {
+            view.draw_counted(&mesh, &pose, surface, band, &mut stats);
         };
         let at = |x, y, z| Pose::IDENTITY.at(Vec3::lit(x, y, z));
-        let painted = |red, green, blue| Material::flat(Rgb565::new(red, green, blue)).lit(&LIGHTS);
+        let painted = |red, green, blue| Material::flat(Rgb565::new(red, green, blue)).lit();
         let [left, half] = [90, 180].map(Turn::from_degrees);
         let (china, brass) = (painted(29, 57, 27), painted(28, 46, 10));
         let [brick, gravel] = [lit(&self.brick)?, lit(&self.gravel)?];
@@ -199,23 +201,31 @@ impl Scene {
         let (ball, triangles) = (SPHERE.mesh(), SPHERE.mesh().triangles().collect::<Vec<_>>());
         let around = camera.placement().translation;
         let dome = Pose::IDENTITY.scaled_lit(200.0).at(around);
-        draw(Mesh::try_new(&self.sky, &triangles)?, dome, Material::gouraud().cull(Cull::Front));
+        draw(Mesh::try_new(&self.sky, &triangles)?, dome, (&Material::gouraud().cull(Cull::Front)).into());
 
         // Each of these lies over the next.
-        draw(FLOOR.mesh(), at(0.0, 0.0, 0.0).rotated_x(-left), paving);
-        draw(PATH.mesh(), at(0.0, -0.06, 12.6).rotated_x(-left), gravel);
-        draw(GROUND.mesh(), at(0.0, -0.14, 0.0).rotated_x(-left).scaled_lit(20.0), grass.texture_scale(3));
-        draw(self.room.mesh()?, Pose::IDENTITY, brick);
+        draw(FLOOR.mesh(), at(0.0, 0.0, 0.0).rotated_x(-left), (&paving).into());
+        draw(PATH.mesh(), at(0.0, -0.06, 12.6).rotated_x(-left), (&gravel).into());
+        draw(
+            GROUND.mesh(),
+            at(0.0, -0.14, 0.0).rotated_x(-left).scaled_lit(20.0),
+            (&grass.texture_scale(3)).into(),
+        );
+        draw(self.room.mesh()?, Pose::IDENTITY, (&brick).into());
 
         // Flown through: both have insides.
-        draw(STAND.mesh(), at(-0.45, 0.45, 2.4), gravel);
+        draw(STAND.mesh(), at(-0.45, 0.45, 2.4), (&gravel).into());
         let turned = Pose::IDENTITY.rotated_y(Turn::from_degrees(-35));
-        draw(self.teapot.mesh()?, turned.scaled_lit(2.6 / MODEL).at(TEAPOT), china.two_sided());
-        draw(FOOT.mesh(), at(0.0, 0.39, -1.9), gravel);
-        draw(RING.mesh(), at(0.0, 0.775, -1.9).rotated_x(left), brass);
+        draw(self.teapot.mesh()?, turned.scaled_lit(2.6 / MODEL).at(TEAPOT), (&china.two_sided()).into());
+        draw(FOOT.mesh(), at(0.0, 0.39, -1.9), (&gravel).into());
+        draw(RING.mesh(), at(0.0, 0.775, -1.9).rotated_x(left), (&brass).into());
         let tilted = Pose::IDENTITY.rotated_y(half).rotated_z(Turn::from_degrees(-23));
-        draw(self.globe.mesh()?, tilted.scaled_lit(2.2 / MODEL).at(EARTH), earth.two_sided());
-        draw(ball, Pose::IDENTITY.scaled_lit(0.1).at(LAMP), Material::flat(Rgb565::new(31, 60, 22)));
+        draw(self.globe.mesh()?, tilted.scaled_lit(2.2 / MODEL).at(EARTH), (&earth.two_sided()).into());
+        draw(
+            ball,
+            Pose::IDENTITY.scaled_lit(0.1).at(LAMP),
+            (&Material::flat(Rgb565::new(31, 60, 22))).into(),
+        );
 
         let style = MonoTextStyle::new(&FONT_5X7, Rgb565::WHITE);
         let Ok(_) = Text::new(CREDIT, Point::new(4, SIZE.height as i32 - 5), style).draw(band);

@@ -79,7 +79,7 @@ use embedded_graphics::prelude::Size;
 use fixel::fixed::types::{I12F4, I16F16, U1F31, U8F8};
 use fixel::{
     Affine, Band, Cull, DepthFormat, Exact, Inputs, PixelFormat, Quality, QuarterPixel, ScreenVertex, Shader,
-    Varying, draw_triangle,
+    Surface, Varying, draw_triangle,
 };
 
 const USAGE: &str = "usage: probe CASE OUT [exact|default|affine]";
@@ -381,7 +381,7 @@ fn depth(near_w: U1F31) -> u16 {
 struct Coordinates<Q> {
     triangle: u16,
     cull: Cull,
-    quality: PhantomData<Q>,
+    quality: PhantomData<fn() -> Q>,
 }
 
 impl<Q: Quality> Shader<Recording> for Coordinates<Q> {
@@ -445,7 +445,7 @@ impl Case {
     fn draw_into<Q: Quality, D: DepthFormat<Word = Met>>(&self) -> Result<Pixels, String> {
         draw_all::<Q, D>(self.size, self.cull, self.triangles.len(), |index, shader, band| {
             let vertices = self.triangles[index].map(|vertex| screen_vertex(vertex, self.near));
-            draw_triangle(&vertices, self.cull, shader, band).map_err(|error| error.to_string())
+            draw_triangle(&vertices, self.cull, Surface::new(shader), band).map_err(|error| error.to_string())
         })
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use embedded_graphics::prelude::Size;
 use fixel::fixed::types::{I2F14, I4F12, I12F4, I16F16, U10F22};
-use fixel::{Affine, Camera, Cull, Exact, Mesh, Pose, Quality, QuarterPixel, Vec3, Vertex};
+use fixel::{Affine, Camera, Cull, Exact, Mesh, Pose, Quality, QuarterPixel, Surface, Vec3, Vertex};
 
 use super::{Counting, MOST_TRIANGLES, Picture, Pixels, draw_all, report, words};
 
@@ -155,7 +155,7 @@ impl Case {
     fn draw<Q: Quality>(&self) -> Result<Pixels, String> {
         let mesh = Mesh::try_new(&self.vertices, &self.triangles).map_err(|error| error.to_string())?;
         draw_all::<Q, Counting<true>>(self.size, self.cull, self.triangles.len(), |index, shader, band| {
-            self.camera.draw(&mesh.part(index, index + 1), &self.pose, shader, band);
+            self.camera.draw(&mesh.part(index, index + 1), &self.pose, Surface::new(shader), band);
             Ok(())
         })
     }

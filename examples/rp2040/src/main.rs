@@ -25,7 +25,7 @@ use rp2040_hal::multicore::{Multicore, Stack};
 use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
 use static_cell::ConstStaticCell;
 
-use scene::{Format, LIST, SCREEN};
+use scene::{Format, SCREEN};
 
 const CORES: usize = 2;
 /// Rows of a band.
@@ -93,7 +93,7 @@ impl Painter {
 
     /// Draws this core's bands of the frame, one while the one before is sent.
     fn frame(&mut self) {
-        let list = LIST.read();
+        let list = scene::list().read();
         for number in (self.core..BANDS).step_by(CORES) {
             let top = (number * ROWS) as u32;
             self.band.move_to(top);
@@ -160,7 +160,7 @@ fn main() -> ! {
     let mut painter = Painter::new(0);
     for frame in (1..=u32::MAX).cycle() {
         // Core 1 waits: nobody reads the list.
-        scene::record(frame, &mut LIST.write()).expect("the list has room for the torus");
+        scene::record(frame, &mut scene::list().write()).expect("the list has room for the torus");
         report(&RECORDED, frame);
         painter.frame();
         wait_for(&DRAWN, frame);
