@@ -24,7 +24,7 @@ use embedded_graphics::prelude::RawData;
 ///
 /// ```
 /// use fixel::material::Gouraud;
-/// use fixel::{Material, Texture, embedded_graphics::pixelcolor::{Rgb565, prelude::*}};
+/// use fixel::{Material, Texture, embedded_graphics::{pixelcolor::Rgb565, prelude::*}};
 /// static CHECKS: Texture = Texture::new(&[0xffdf, 0x4a69, 0x4a69, 0xffdf], 1, 1);
 /// static LACQUER: Material<Gouraud> = Material::gouraud().lit(); // `static`s name the type
 /// let gold = Material::flat(Rgb565::CSS_GOLD);

@@ -24,7 +24,7 @@ use core::fmt;
 /// [by reference](Surface::new). A surface is a value, and forgets its type: an array can hold surfaces of different kinds.
 ///
 /// ```
-/// use fixel::embedded_graphics::pixelcolor::{Rgb565, prelude::*};
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 /// use fixel::{Depth16, Material, Surface};
 /// let surfaces: [Surface<Rgb565, Depth16>; 2] =
 ///     [(&Material::flat(Rgb565::CSS_GOLD)).into(), (&Material::gouraud().exact()).into()];
