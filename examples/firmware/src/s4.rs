@@ -25,17 +25,15 @@ const CAMERA: Camera = Camera::focal(120.0, SIZE)
     .near(0.1)
     .pose(Pose::IDENTITY.rotated_x(Turn::from_raw(1784u16.wrapping_neg())));
 
-/// A mesh, where it stands, and its surface.
-struct Thing(&'static Mesh<'static>, Pose, Surface<'static, Rgb565, Depth16>);
+/// A mesh, where it stands, and its surface, which is made when it is drawn.
+struct Thing(&'static Mesh<'static>, Pose, fn() -> Surface<'static, Rgb565, Depth16>);
 
 /// The torus is first: while a mesh goes into a list there has to be room for all its vertices, and half of them stay.
-fn things() -> [Thing; DRAWS] {
-    [
-        Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, (&Material::textured(&WALL).lit()).into()),
-        Thing(&CUBE, CUBE_POSE, (&Material::textured(&WALL)).into()),
-        Thing(&GROUND, GROUND_POSE, (&Material::textured(&PAVING)).into()),
-    ]
-}
+static THINGS: [Thing; 3] = [
+    Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, || (&Material::textured(&WALL).lit()).into()),
+    Thing(&CUBE, CUBE_POSE, || (&Material::textured(&WALL)).into()),
+    Thing(&GROUND, GROUND_POSE, || (&Material::textured(&PAVING)).into()),
+];
 
 /// The wall's bricks as slabs of stone.
 static SLABS: [u16; 4096] = slabs();
@@ -73,12 +71,11 @@ const CAPTION_AREA: Rectangle =
 
 const VERTICES: usize = 546;
 const TRIANGLES: usize = 429;
-const DRAWS: usize = 3;
 
 /// Room for what is seen, and for all of the torus while it goes in.
 pub type Memory = ListMemory<VERTICES, TRIANGLES>;
 /// The list on it.
-pub type List<'a> = DisplayList<'a, Rgb565, Depth16, DRAWS>;
+pub type List<'a> = DisplayList<'a, Rgb565, Depth16, { THINGS.len() }>;
 
 /// What is behind everything.
 #[must_use]
@@ -94,7 +91,7 @@ pub fn sky() -> Gradient {
 pub fn record(list: &mut List<'_>) -> Result<(), CapacityError> {
     list.clear();
     let view = CAMERA.lit_by(&LIGHTS);
-    things().iter().try_for_each(|Thing(mesh, pose, surface)| view.draw(mesh, pose, surface, list))
+    THINGS.iter().try_for_each(|Thing(mesh, pose, surface)| view.draw(mesh, pose, surface(), list))
 }
 
 /// Draws the listed scene from the top down, as many rows at a time as the band has, and hands them to `show`.
@@ -116,8 +113,8 @@ pub fn render<E>(
 /// Draws the same without a list, at once, into a frame of the whole screen.
 pub fn draw(frame: &mut Deep<'_>) {
     frame.clear_to(&sky());
-    for Thing(mesh, pose, surface) in &things() {
-        CAMERA.lit_by(&LIGHTS).draw(mesh, pose, surface, frame);
+    for Thing(mesh, pose, surface) in &THINGS {
+        CAMERA.lit_by(&LIGHTS).draw(mesh, pose, surface(), frame);
     }
     write(frame);
 }
@@ -165,7 +162,7 @@ mod tests {
         let [vertices, triangles, draws] = list.lengths();
         let bytes = Memory::BYTES + List::BYTES;
         println!("s4: {vertices} vertices, {triangles} triangles, {draws} draws in {bytes} bytes");
-        assert_eq!([triangles, draws], [TRIANGLES, DRAWS]);
+        assert_eq!([triangles, draws], [TRIANGLES, THINGS.len()]);
         // All of the torus, while it goes in.
         assert_eq!(TEXTURED_TORUS_MESH.vertices().len(), VERTICES);
     }

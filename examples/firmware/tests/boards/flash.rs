@@ -30,9 +30,9 @@ const CLAMPED: &str = "fixel::scene::texture::Texture>::fetch_clamp";
 
 /// What a program must not link. `all` has each of them, which shows that they are still called so.
 const FORBIDDEN: [(&str, &[&str]); 3] = [
-    ("flat", &[EXACT, AFFINE]),
+    ("flat", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED]),
     ("textured", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED]),
-    ("textured_lit", &[EXACT, AFFINE]),
+    ("textured_lit", &[EXACT, AFFINE, CLAMPED]),
 ];
 
 /// What a program takes of a chip's flash, in bytes.
