@@ -87,6 +87,52 @@
 //! `draw` joins them. A [`DisplayList`] cuts this in two behind **geometry**: it keeps the screen vertices and the triangles that are
 //! seen, each vertex transformed and lit once, and sends them through the rest as often as there are bands.
 //!
+//! # Transparent, cut out, in fog
+//!
+//! A material is a value: it says by its type what it is, and a program links the loops of what it names. `.lit()` puts it in the
+//! light of the view; `.alpha(96)`, `.additive()`, `.multiply()` and `.screen_door()` lay it over what is there; `.cut_out(color)` and
+//! `.masked(&mask)` leave texels out; `.depth(tests, writes)` and `.depth_bias(steps)` change what it does with depth. Lights and fog
+//! belong to the view. A list takes all of it, and draws what is transparent last, from back to front:
+//!
+//! ```
+//! # use embedded_graphics::{mock_display::MockDisplay, pixelcolor::{Rgb565, Rgb888}, prelude::*};
+//! # use fixel::{prelude::*, Gradient, num::I16F16};
+//! # static TEXELS: [u16; 4] = [0x07e0, 0xf81f, 0xf81f, 0x0400];
+//! # static LEAVES: Texture = Texture::new(&TEXELS, 1, 1);
+//! # const QUAD: Mesh = Mesh::new(
+//! #     &[
+//! #         Vertex::new(-1.0, 1.0, 0.0).uv(0, 0), Vertex::new(-1.0, -1.0, 0.0).uv(0, 2),
+//! #         Vertex::new(1.0, -1.0, 0.0).uv(2, 2), Vertex::new(1.0, 1.0, 0.0).uv(2, 0),
+//! #     ],
+//! #     &[[0, 1, 2], [0, 2, 3]],
+//! # );
+//! # const ROOM: Mesh = QUAD;
+//! # const TREE: Mesh = QUAD;
+//! # const PANE: Mesh = QUAD;
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut display = MockDisplay::new();
+//! # display.set_allow_overdraw(true);
+//! # let camera = Camera::perspective(Turn::from_degrees(60), display.size()).at(Vec3::lit(0.0, 0.0, 2.5));
+//! # let (mut pixels, mut depth) = ([0; 64 * 16], [0; 64 * 16]);
+//! # let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?;
+//! # let mut memory = ListMemory::<32, 16>::new();
+//! # let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, display.size().height);
+//! # let [tree, pane] = [0, 1].map(|z| Pose::IDENTITY.at(Vec3::new(0.into(), 0.into(), z.into())));
+//! let torch = [Light::point(Vec3::lit(0.5, 0.5, 1.0), [255, 200, 120], I16F16::lit("4"))]; // made in the frame
+//! let lights = Lights::new([40; 3], &torch);
+//! let fog = Fog::linear(Rgb565::WHITE, I16F16::lit("2"), I16F16::lit("9")).towards(&sky);
+//! let view = camera.lit_by(&lights).in_fog(&fog);
+//! let mut list = DisplayList::<Rgb565, Depth16, 8>::new(&mut memory);
+//! view.draw(&PANE, &pane, &Material::flat(Rgb565::CSS_SKY_BLUE).alpha(96), &mut list)?;
+//! view.draw(&ROOM, &Pose::IDENTITY, &Material::gouraud().lit(), &mut list)?;
+//! view.draw(&TREE, &tree, &Material::textured(&LEAVES).cut_out(Rgb565::CSS_MAGENTA), &mut list)?;
+//! list.render_bands(display.size().height, &sky, &mut band, |area, band| {
+//!     display.fill_contiguous(&area, band.colors())
+//! })?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # A scene bigger than RAM
 //!
 //! 240 × 320 pixels with depth are 300 KiB as a frame, and 15 KiB as a band of 16 rows. A [`DisplayList`] keeps what a camera drew
@@ -148,30 +194,36 @@ pub use embedded_graphics;
 pub use fixed;
 
 pub use draw::{
-    Canvas, CapacityError, Changes, CornersError, DisplayList, Flushed, ListMemory, PerspectiveImage,
-    Projected, ShadedTriangle, View, draw_triangle,
+    Air, Canvas, CapacityError, Changes, Clear, CornersError, DisplayList, Flushed, ListMemory,
+    PerspectiveImage, Projected, ShadedTriangle, View, draw_triangle,
 };
 pub use frame::{
-    Background, Band, BigEndian, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat, TargetError,
+    Background, Band, BigEndian, BlendFormat, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat,
+    TargetError,
 };
 pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use scene::{
-    Camera, LensError, Light, Lighting, Lights, LightsError, Mesh, MeshError, Normal, PlaneError, Texture,
-    TextureError, Vertex, VertexError, shapes, texels,
+    Camera, LensError, Light, Lighting, Lights, LightsError, Mask, MaskError, Mesh, MeshError, Normal,
+    PlaneError, Texture, TextureError, Vertex, VertexError, shapes, texels,
 };
-pub use shade::{Affine, Exact, Material, Pixels, Quality, QuarterPixel, Shader, Surface, Varying};
+pub use shade::{
+    Affine, Exact, Fog, Fragment, Material, Pixels, Quality, QuarterPixel, Reach, Shader, Surface, Varying,
+};
 
 /// The kinds of [`Material`], where a type has to be named.
 pub mod material {
-    pub use crate::shade::{Clamped, Flat, Gouraud, Kind, LitClamped, LitTextured, Textured};
+    pub use crate::shade::{
+        Additive, Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, Layer, LayerIn, LitClamped, LitKind,
+        LitTextured, Masked, Multiply, Opaque, Over, ScreenDoor, TexelKind, Textured, VertexAlpha,
+    };
 }
 
 /// What most programs use: `use fixel::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        Band, Camera, Cull, Depth16, DisplayList, Light, Lights, ListMemory, Material, Mesh, NoDepth, Pose,
-        Quaternion, Texture, Turn, Vec3, Vertex, texels,
+        Band, Camera, Cull, Depth16, DisplayList, Fog, Light, Lights, ListMemory, Material, Mesh, NoDepth,
+        Pose, Quaternion, Surface, Texture, Turn, Vec3, Vertex, View, texels,
     };
 }
 

@@ -419,7 +419,8 @@ fn a_list_takes_what_it_says() {
     assert_eq!([Memory::BYTES, List::BYTES], [size_of::<Memory>(), size_of::<List>()]);
     // 16 bytes a vertex, 8 a triangle and 2 for its place in the order; lengths and draws.
     let room = Memory::BYTES + List::BYTES - 400 * 16 - 440 * 10;
-    assert!(room <= 4 * 64 + 64, "{room} bytes for 4 draws");
+    // A draw keeps its material by value, and the fog: 256 bytes with pointers of 64 bits, and fewer on a chip.
+    assert!(room <= 4 * 256 + 128, "{room} bytes for 4 draws");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use common::generate::{strip, triangle};
 use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
 use fixel::embedded_graphics::pixelcolor::raw::RawU16;
-use fixel::material::Kind;
+use fixel::material::LitKind;
 use fixel::{
     Affine, Cull, Exact, Inputs, Material, NoDepth, Pixels, Quality, QuarterPixel, Shader, Surface, Texture,
     TextureError, Varying,
@@ -76,7 +76,7 @@ fn scaled_texture<'a, Q: Quality>(
     scale_log2: u32,
     is_lit: bool,
 ) -> Recorded<'a> {
-    fn of<'a, K: Kind, Q: Quality>(material: Material<'a, K, Q>, is_lit: bool) -> Recorded<'a> {
+    fn of<'a, K: LitKind, Q: Quality>(material: Material<'a, K, Q>, is_lit: bool) -> Recorded<'a> {
         if is_lit { (&material.lit()).into() } else { (&material).into() }
     }
     let scale_log2 = scale_log2 as u8;

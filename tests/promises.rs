@@ -16,11 +16,14 @@ mod direct;
 mod dma;
 mod docs;
 mod extremes;
+mod fog;
 mod house;
 mod materials;
 mod probe;
 mod robustness;
+mod surfaces;
 mod transform;
+mod transparency;
 mod views;
 mod yardstick;
 

@@ -6,11 +6,12 @@
 
 use super::canvas::Canvas;
 use super::view::View;
+use crate::frame::{Band, Depth16, DepthFormat, PixelFormat};
 use crate::geometry::{Clip, MOST_CORNERS, ScreenVertex, Stats, ToClip, VertexColors};
 use crate::math::{Pose, Vec3};
 use crate::num::{I12F4, U1F31};
 use crate::scene::{Camera, Lights, Mesh, Projection, Vertex};
-use crate::shade::Surface;
+use crate::shade::{Fog, Surface};
 
 /// A point of the world on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,29 @@ pub struct Projected {
     pub y: I12F4,
     /// near/w (perspective) or 1 at the near and 0 at the far plane (orthographic), to compare with depth.
     pub q: U1F31,
+}
+
+impl Projected {
+    /// Its depth as [`Depth16`] has it, to compare with [`Band::depth`]: near/w · 2¹⁶ rounded down, but at least 1.
+    #[must_use]
+    pub fn depth(&self) -> u16 {
+        let mut depth = 0;
+        Depth16::store(&mut depth, self.q);
+        depth
+    }
+
+    /// Whether it would be seen in a band as a pixel: whether nothing that was drawn there is as near. `None` if it lies outside the
+    /// band's rows or columns.
+    #[must_use]
+    pub fn is_visible_in<F: PixelFormat, D: DepthFormat>(&self, band: &Band<'_, F, D>) -> Option<bool> {
+        let [x, y] = [self.x, self.y].map(|at| i32::from(at.to_bits()) >> 4);
+        let window = band.window();
+        if !window.columns.contains(&x) || !window.rows.contains(&y) {
+            return None;
+        }
+        let index = (y - window.rows.start) as usize * usize::from(band.width) + x as usize;
+        Some(D::ALWAYS_PASSES || D::test(band.depth.get(index)?, self.q))
+    }
 }
 
 impl Camera {
@@ -36,6 +60,12 @@ impl Camera {
     #[must_use]
     pub const fn lit_by<'v>(&'v self, lights: &'v Lights<'v>) -> View<'v> {
         View::of(self).lit_by(lights)
+    }
+
+    /// What this camera sees in fog.
+    #[must_use]
+    pub const fn in_fog<'f>(&self, fog: &Fog<'f>) -> View<'_, Fog<'f>> {
+        View::of(self).in_fog(fog)
     }
 
     /// [`View::draw`] without lights.

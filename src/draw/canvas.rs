@@ -1,13 +1,14 @@
 //! What can be drawn to: a band, at once, or a display list, for later.
 
 use super::mesh::draw;
+use super::sight::Sight;
 use crate::frame::{Band, DepthFormat, PixelFormat};
 use crate::geometry::Count;
 use crate::math::Pose;
-use crate::scene::{Camera, Lights, Mesh};
+use crate::scene::Mesh;
 use crate::shade::Surface;
 
-/// What [`Camera::draw`] draws to: a [`Band`], at once, or a [`DisplayList`](super::DisplayList), for later.
+/// What [`Camera::draw`](crate::Camera::draw) draws to: a [`Band`], at once, or a [`DisplayList`](super::DisplayList), for later.
 ///
 /// A list keeps the mesh's vertices, the material's texture and shaders borrowed, for `'a`; a band does not.
 pub trait Canvas<'a>: sealed::Sealed {
@@ -21,7 +22,7 @@ pub trait Canvas<'a>: sealed::Sealed {
     #[doc(hidden)]
     fn draw_mesh(
         &mut self,
-        view: (&Camera, Option<&Lights<'_>>),
+        sight: &Sight<'_, 'a, Self::Format, Self::Depth>,
         mesh: &Mesh<'a>,
         pose: &Pose,
         surface: &Surface<'a, Self::Format, Self::Depth>,
@@ -37,13 +38,13 @@ impl<'a, F: PixelFormat, D: DepthFormat> Canvas<'a> for Band<'_, F, D> {
     #[inline]
     fn draw_mesh(
         &mut self,
-        view: (&Camera, Option<&Lights<'_>>),
+        sight: &Sight<'_, 'a, F, D>,
         mesh: &Mesh<'a>,
         pose: &Pose,
         surface: &Surface<'a, F, D>,
         stats: &mut impl Count,
     ) {
-        draw(mesh, view, pose, surface, self, stats);
+        draw(mesh, sight, pose, surface, self, stats);
     }
 }
 

@@ -24,7 +24,7 @@ use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Cover, Material, Run, Shader, Textured, Traits, is_small};
+use crate::shade::{Cover, Layers, Material, Run, Shader, Textured, Traits, is_small};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -157,6 +157,8 @@ where
                 width: 0,
                 pixels,
                 depth: &mut [],
+                layers: &Layers::OPAQUE,
+                fog: None,
             });
             let words = run.get((seen.start - start) as usize..(seen.end - start) as usize);
             let area = Rectangle::new(Point::new(seen.start, y), Size::new(seen.len() as u32, 1));

@@ -4,24 +4,25 @@
 //! - Out: words and depths in the band.
 //! - Assumes: nothing: a mesh that is out of sight is left out whole.
 
+use super::sight::Sight;
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
 use crate::geometry::{Assembler, Clip, Count, ToClip, VertexCache};
 use crate::math::Pose;
-use crate::scene::{Camera, Lights, Mesh};
+use crate::scene::Mesh;
 use crate::shade::Surface;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     mesh: &Mesh<'_>,
-    (camera, lights): (&Camera, Option<&Lights<'_>>),
+    sight: &Sight<'_, '_, F, D>,
     pose: &Pose,
     surface: &Surface<'_, F, D>,
     band: &mut Band<'_, F, D>,
     stats: &mut impl Count,
 ) {
     stats.count(|stats| &mut stats.meshes);
-    let (projection, camera) = (camera.projection(), camera.placement());
+    let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
     let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let to_clip = ToClip::new(projection, camera, pose);
     let clip = Clip::new(projection, to_clip.unit_bits());
@@ -31,9 +32,11 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let (colors, light_face) = surface.coloring.colors(lights, pose);
+    let colors = surface.coloring.colors(sight.lights, pose);
+    let light_face = surface.coloring.light_face(sight.lights);
     let assembler = Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring: &colors, cull, light_face };
-    let mut raster = Raster::new(&surface.look, [projection.orthographic, false], window, band);
+    let mut raster =
+        Raster::new((&surface.look, sight.fog.as_ref()), [projection.orthographic, false], window, band);
     let mut cache = VertexCache::ZERO;
     cache.forget();
     loop {

@@ -6,6 +6,7 @@ mod direct;
 mod list;
 mod mesh;
 mod pictures;
+mod sight;
 mod triangle;
 mod view;
 
@@ -14,4 +15,4 @@ pub use canvas::Canvas;
 pub use list::{CapacityError, Changes, DisplayList, Flushed, ListMemory};
 pub use pictures::{CornersError, PerspectiveImage, ShadedTriangle};
 pub use triangle::draw_triangle;
-pub use view::View;
+pub use view::{Air, Clear, View};

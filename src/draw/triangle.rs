@@ -7,7 +7,7 @@
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
 use crate::raster::{Needs, Rows, Runs, TriangleSetup};
-use crate::shade::{Cover, Look, Surface};
+use crate::shade::{Cover, InFog, Look, Surface};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
@@ -28,13 +28,18 @@ pub fn draw_triangle<'a, F: PixelFormat, D: DepthFormat>(
         return Err(RangeError);
     }
     let window = band.window();
-    Raster::new(&surface.into().look, [false; 2], window, band).draw(vertices.each_ref(), cull, &mut ());
+    Raster::new((&surface.into().look, None), [false; 2], window, band).draw(
+        vertices.each_ref(),
+        cull,
+        &mut (),
+    );
     Ok(())
 }
 
 /// The stages from set-up on.
 pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat> {
     look: &'a Look<'a, F, D>,
+    fog: Option<&'a InFog<'a, F, D>>,
     band: &'a mut Band<'b, F, D>,
     window: Window,
     needs: Needs,
@@ -48,22 +53,24 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
     #[inline(never)]
     pub(crate) fn new(
-        look: &'a Look<'a, F, D>,
+        (look, fog): (&'a Look<'a, F, D>, Option<&'a InFog<'a, F, D>>),
         kind: [bool; 2],
         window: Window,
         band: &'a mut Band<'b, F, D>,
     ) -> Self {
-        let (setup, rows, needs) = (TriangleSetup::new(), Rows::default(), Self::needs(look, kind));
-        Self { look, band, window, needs, setup, rows }
+        let (setup, rows, needs) = (TriangleSetup::new(), Rows::default(), look.needs(kind, fog.is_some()));
+        Self { look, fog, band, window, needs, setup, rows }
     }
 
-    /// The same for another surface and window.
-    pub(crate) fn change(&mut self, look: &'a Look<'a, F, D>, kind: [bool; 2], window: Window) {
-        (self.look, self.window, self.needs) = (look, window, Self::needs(look, kind));
-    }
-
-    fn needs(look: &Look<'_, F, D>, [is_orthographic, is_gray]: [bool; 2]) -> Needs {
-        look.traits.needs(!D::ALWAYS_PASSES, is_orthographic, is_gray)
+    /// The same for another surface, perhaps in fog, and window.
+    pub(crate) fn change(
+        &mut self,
+        (look, fog): (&'a Look<'a, F, D>, Option<&'a InFog<'a, F, D>>),
+        kind: [bool; 2],
+        window: Window,
+    ) {
+        (self.look, self.fog, self.window) = (look, fog, window);
+        self.needs = look.needs(kind, fog.is_some());
     }
 
     #[inline]
@@ -116,6 +123,7 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         let (top, width) = (usize::from(self.band.top), usize::from(self.band.width));
         let origin = 0usize.wrapping_sub(top * width);
         let (pixels, depth) = (&mut *self.band.pixels, &mut *self.band.depth);
-        self.look.paint(&mut Cover { setup, rows, window, origin, width, pixels, depth });
+        let (layers, fog) = (&self.look.layers, self.fog);
+        self.look.paint(&mut Cover { setup, rows, window, origin, width, pixels, depth, layers, fog });
     }
 }

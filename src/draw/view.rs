@@ -1,37 +1,92 @@
-//! Views: a camera, and the lights in which it sees.
+//! Views: a camera, the lights in which it sees, and fog.
 //!
 //! - In: a mesh, its pose and a surface.
 //! - Out: what the canvas makes of the mesh.
 //! - Assumes: nothing: any numbers are taken.
 
 use super::canvas::Canvas;
+use super::sight::Sight;
+use crate::frame::{BlendFormat, DepthFormat, PixelFormat};
 use crate::geometry::Stats;
 use crate::math::Pose;
 use crate::scene::{Camera, Lights, Mesh};
-use crate::shade::Surface;
+use crate::shade::{Fog, InFog, Surface};
+use sealed::Sealed;
 
-/// What a [`Camera`] sees in the light of some [`Lights`].
+/// What a [`Camera`] sees in the light of some [`Lights`], and in [`Fog`] or in clear air.
 ///
 /// ```
-/// use fixel::prelude::*;
-/// # use fixel::embedded_graphics::prelude::*;
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::{Fog, prelude::*};
 /// # let camera = Camera::perspective(Turn::from_degrees(60), Size::new(64, 64));
 /// let torch = [Light::point(Vec3::lit(0.0, 1.0, 2.0), [255, 180, 90], fixel::num::I16F16::lit("8"))];
 /// let lights = Lights::new([20, 20, 30], &torch); // made in this frame, and gone with it
-/// let view = camera.lit_by(&lights);
+/// let mist = Fog::linear(Rgb565::CSS_GRAY, fixel::num::I16F16::lit("2"), fixel::num::I16F16::lit("12"));
+/// let view = camera.lit_by(&lights).in_fog(&mist);
 /// # let _ = view;
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct View<'v> {
+pub struct View<'v, A = Clear> {
     camera: &'v Camera,
     lights: Option<&'v Lights<'v>>,
+    air: A,
+}
+
+/// Air without fog.
+#[derive(Clone, Copy, Debug)]
+pub struct Clear;
+
+/// What lies between the eye and what it sees: [`Clear`] air, or [`Fog`] in a pixel format that [can blend](BlendFormat). Programs
+/// without fog do not link it.
+pub trait Air<'a, F: PixelFormat>: Sealed {
+    #[doc(hidden)]
+    fn sight<'v, D: DepthFormat>(
+        &self,
+        camera: &'v Camera,
+        lights: Option<&'v Lights<'v>>,
+    ) -> Sight<'v, 'a, F, D>;
+}
+
+impl<'a, F: PixelFormat> Air<'a, F> for Clear {
+    #[inline]
+    fn sight<'v, D: DepthFormat>(
+        &self,
+        camera: &'v Camera,
+        lights: Option<&'v Lights<'v>>,
+    ) -> Sight<'v, 'a, F, D> {
+        Sight { camera, lights, fog: None }
+    }
+}
+
+impl<'a, F: BlendFormat> Air<'a, F> for Fog<'a> {
+    fn sight<'v, D: DepthFormat>(
+        &self,
+        camera: &'v Camera,
+        lights: Option<&'v Lights<'v>>,
+    ) -> Sight<'v, 'a, F, D> {
+        Sight { camera, lights, fog: Some(InFog::new(self, camera)) }
+    }
+}
+
+mod sealed {
+    pub trait Sealed {}
+    impl Sealed for super::Clear {}
+    impl Sealed for super::Fog<'_> {}
 }
 
 impl<'v> View<'v> {
-    /// Without lights.
+    /// Without lights, in clear air.
     #[must_use]
     pub const fn of(camera: &'v Camera) -> Self {
-        Self { camera, lights: None }
+        Self { camera, lights: None, air: Clear }
+    }
+}
+
+impl<'v, A: Copy> View<'v, A> {
+    /// The same in fog, in place of any before. A list keeps it by value, but for a gradient or a table that it has.
+    #[must_use]
+    pub const fn in_fog<'f>(self, fog: &Fog<'f>) -> View<'v, Fog<'f>> {
+        View { camera: self.camera, lights: self.lights, air: *fog }
     }
 
     /// The same in the light of these lights, in place of any before. A list does not keep them.
@@ -66,8 +121,11 @@ impl<'v> View<'v> {
         pose: &Pose,
         surface: impl Into<Surface<'a, C::Format, C::Depth>>,
         canvas: &mut C,
-    ) -> C::Output {
-        canvas.draw_mesh((self.camera, self.lights), mesh, pose, &surface.into(), &mut ())
+    ) -> C::Output
+    where
+        A: Air<'a, C::Format>,
+    {
+        canvas.draw_mesh(&self.air.sight(self.camera, self.lights), mesh, pose, &surface.into(), &mut ())
     }
 
     /// As [`View::draw`], and counts what became of the mesh.
@@ -78,7 +136,10 @@ impl<'v> View<'v> {
         surface: impl Into<Surface<'a, C::Format, C::Depth>>,
         canvas: &mut C,
         stats: &mut Stats,
-    ) -> C::Output {
-        canvas.draw_mesh((self.camera, self.lights), mesh, pose, &surface.into(), stats)
+    ) -> C::Output
+    where
+        A: Air<'a, C::Format>,
+    {
+        canvas.draw_mesh(&self.air.sight(self.camera, self.lights), mesh, pose, &surface.into(), stats)
     }
 }

@@ -56,13 +56,18 @@ impl Gradient {
             last,
         }
     }
+
+    /// The word of row `y`.
+    pub(crate) fn word<F: PixelFormat>(&self, y: u32) -> F::Word {
+        let y = y.min(self.last) as i32;
+        let [red, green, blue] = core::array::from_fn(|i| ((self.top[i] + self.step[i] * y) >> 16) as u8);
+        F::rgb888(red, green, blue)
+    }
 }
 
 impl<F: PixelFormat> Background<F> for Gradient {
     fn fill_row(&self, y: u32, row: &mut [F::Word]) {
-        let y = y.min(self.last) as i32;
-        let [red, green, blue] = core::array::from_fn(|i| ((self.top[i] + self.step[i] * y) >> 16) as u8);
-        fill_evenly(row, F::rgb888(red, green, blue));
+        fill_evenly(row, self.word::<F>(y));
     }
 }
 

@@ -103,6 +103,18 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.pixels.get(..self.len()).unwrap_or_default()
     }
 
+    /// The same to be changed.
+    pub fn pixels_mut(&mut self) -> &mut [F::Word] {
+        let length = self.len();
+        self.pixels.get_mut(..length).unwrap_or_default()
+    }
+
+    /// [`Band::depth`] to be changed.
+    pub fn depth_mut(&mut self) -> &mut [D::Word] {
+        let length = self.len().min(self.depth.len());
+        self.depth.get_mut(..length).unwrap_or_default()
+    }
+
     /// How many pixels are in use.
     fn len(&self) -> usize {
         usize::from(self.width) * usize::from(self.height)

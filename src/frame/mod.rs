@@ -4,6 +4,7 @@
 
 mod background;
 mod band;
+mod blend;
 mod depth;
 mod draw_target;
 mod format;
@@ -11,6 +12,7 @@ mod window;
 
 pub use background::{Background, Gradient, Picture};
 pub use band::{Band, TargetError};
+pub use blend::BlendFormat;
 pub use depth::{Depth16, DepthFormat, NoDepth};
 pub use format::{BigEndian, PixelFormat};
 pub(crate) use window::{Window, first_center};

@@ -54,23 +54,21 @@ impl Coloring {
         Self { two_sided: true, ..self }
     }
 
-    /// The colours of a mesh in this pose, in the light of a view; and with flat shading what lights a face. Without lights
+    /// The colours of a mesh in this pose, in the light of a view. Without lights
     /// nothing is dark: colours are as they are unlit.
     ///
     /// Not inlined: what it takes is not on the stack while pixels are drawn.
     #[inline(never)]
-    pub(crate) fn colors<'p>(
-        &self,
-        lights: Option<&Lights<'_>>,
-        pose: &'p Pose,
-    ) -> (VertexColors<'p>, Option<LightFace>) {
-        let Some((lights, smooth)) = lights.zip(self.light) else {
-            return (VertexColors::new(self.base, None), None);
-        };
-        let (code, light_face) = match self.on_faces {
-            Some((code, light_face)) => (code, Some(light_face)),
-            None => (smooth, None),
-        };
-        (VertexColors::new(self.base, Some(Light::new(code, lights, pose, self.two_sided))), light_face)
+    pub(crate) fn colors<'p>(&self, lights: Option<&Lights<'_>>, pose: &'p Pose) -> VertexColors<'p> {
+        let light = lights.zip(self.light).map(|(lights, smooth)| {
+            let code = self.on_faces.map_or(smooth, |(code, _)| code);
+            Light::new(code, lights, pose, self.two_sided)
+        });
+        VertexColors::new(self.base, light)
+    }
+
+    /// What lights a face in a view with lights, with flat shading.
+    pub(crate) fn light_face(&self, lights: Option<&Lights<'_>>) -> Option<LightFace> {
+        lights.and(self.light).and(self.on_faces).map(|(_, light_face)| light_face)
     }
 }

@@ -1,7 +1,7 @@
 //! The depth test along a span: which of its pixels are visible, as runs.
 //!
 //! - In: stored depths, and near/w (31 fraction bits; greater is nearer) at the first pixel with its step per pixel.
-//! - Out: the first run of pixels that pass, their new depths stored, and how many pixels were tested to find it.
+//! - Out: the first run of pixels that pass, their new depths stored if they are to be, and how many pixels were tested to find it.
 //! - Assumes: near/w stays within 0 … 2³¹ along the span, that is 0 … 1.
 //!
 //! A span may have several runs, with hidden pixels between them. The caller shades one run, then asks again with what is left of
@@ -12,21 +12,27 @@ use crate::frame::DepthFormat;
 use crate::num::U1F31;
 use core::ops::Range;
 
-/// How many pixels of a span pass before the first that does not; stores their depths. None are tested where near/w
-/// may be below 2⁻¹⁶.
+/// How many pixels of a span pass before the first that does not; stores their depths if it `STORES`. None are tested where
+/// near/w may be below 2⁻¹⁶.
 #[inline]
-pub(crate) fn first_visible<D: DepthFormat>(
+pub(crate) fn first_visible<D: DepthFormat, const STORES: bool>(
     depth: &mut [D::Word],
     (near_w, step): (u32, i32),
 ) -> Option<usize> {
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
-    (near_w.min(last) >> 15 != 0).then(|| passing(depth, near_w, step, D::test_and_store_small))
+    (near_w.min(last) >> 15 != 0).then(|| passing(depth, near_w, step, small::<D, STORES>))
 }
 
-/// Finds the first run of pixels that pass, and stores their depths. Stops at the first pixel that fails after one that passed.
+/// The test where near/w is 2⁻¹⁶ or more.
+#[inline(always)]
+fn small<D: DepthFormat, const STORES: bool>(stored: &mut D::Word, near_w: U1F31) -> bool {
+    if STORES { D::test_and_store_small(stored, near_w) } else { D::test(stored, near_w) }
+}
+
+/// Finds the first run of pixels that pass, and stores their depths if it `STORES`. Stops at the first pixel that fails after one that passed.
 /// Returns the run, which is empty and at the end of `depth` if no pixel passes, and how many pixels were tested.
 #[inline(never)]
-pub(crate) fn visible<D: DepthFormat>(
+pub(crate) fn visible<D: DepthFormat, const STORES: bool>(
     depth: &mut [D::Word],
     near_w: u32,
     step: i32,
@@ -34,9 +40,9 @@ pub(crate) fn visible<D: DepthFormat>(
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
     // near/w is linear, so the least of it is at an end. From 2⁻¹⁶ on (bit 15) the format's shorter test does.
     let [start, end] = if near_w.min(last) >> 15 != 0 {
-        first_run(depth, near_w, step, D::test_and_store_small)
+        first_run(depth, near_w, step, small::<D, STORES>)
     } else {
-        first_run_far_away::<D>(depth, near_w, step)
+        first_run_far_away::<D, STORES>(depth, near_w, step)
     };
     (start..end, (end + 1).min(depth.len()))
 }
@@ -44,8 +50,16 @@ pub(crate) fn visible<D: DepthFormat>(
 /// [`first_run`] where near/w may be below 2⁻¹⁶.
 #[cold]
 #[inline(never)]
-fn first_run_far_away<D: DepthFormat>(depth: &mut [D::Word], near_w: u32, step: i32) -> [usize; 2] {
-    first_run(depth, near_w, step, D::test_and_store)
+fn first_run_far_away<D: DepthFormat, const STORES: bool>(
+    depth: &mut [D::Word],
+    near_w: u32,
+    step: i32,
+) -> [usize; 2] {
+    if STORES {
+        first_run(depth, near_w, step, D::test_and_store)
+    } else {
+        first_run(depth, near_w, step, |stored, near_w| D::test(stored, near_w))
+    }
 }
 
 /// The start and the end (exclusive) of the first run. One loop skips pixels that fail, then [`passing`] counts those that pass.

@@ -163,6 +163,11 @@ impl<'a> Mesh<'a> {
         (0..triangles.len()).map(move |i| triangles.at(i))
     }
 
+    /// How many triangles it has.
+    pub(crate) const fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
     /// The triangle `i`, if there are so many.
     #[inline]
     pub(crate) fn triangle(&self, i: usize) -> Option<[u16; 3]> {

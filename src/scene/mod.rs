@@ -3,6 +3,7 @@
 mod camera;
 mod lens_error;
 mod light;
+mod mask;
 mod mesh;
 mod plane_error;
 mod projection;
@@ -14,6 +15,7 @@ mod vertex_error;
 pub use camera::Camera;
 pub use lens_error::LensError;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
+pub use mask::{Mask, MaskError};
 pub(crate) use mesh::Bounds;
 pub use mesh::{Mesh, MeshError};
 pub use plane_error::PlaneError;

@@ -127,9 +127,14 @@ impl<'a> Texture<'a> {
     /// The texel at whole texel coordinates of any size, the border beyond it.
     #[inline]
     pub(crate) fn fetch_clamp(&self, u: i32, v: i32) -> u16 {
-        let u = u.clamp(0, (1 << self.log2_width) - 1) as u32;
-        let v = v.clamp(0, (1 << self.log2_height) - 1) as u32;
+        let [u, v] = self.clamped(u, v).map(|at| at as u32);
         self.texel(u, v)
+    }
+
+    /// The nearest texel of the texture.
+    #[inline]
+    pub(crate) fn clamped(&self, u: i32, v: i32) -> [i32; 2] {
+        [u.clamp(0, (1 << self.log2_width) - 1), v.clamp(0, (1 << self.log2_height) - 1)]
     }
 
     /// The texel at packed coordinates, of a texture that is packable.

@@ -70,6 +70,13 @@ impl Vertex {
         }
     }
 
+    /// The same as opaque as `alpha` says, of 255, for [`Material::vertex_alpha`](crate::Material::vertex_alpha): that is red of
+    /// [`Vertex::color`], which such materials need for nothing else. (All three channels are set.)
+    #[must_use]
+    pub const fn alpha(self, alpha: u8) -> Self {
+        Self { color: [alpha; 3], ..self }
+    }
+
     /// The same with texture coordinates in whole texels, −2048 … 2047. In a `const` or `static` one outside that is a compile
     /// error.
     ///

@@ -1,21 +1,16 @@
-//! The pixels that a triangle covers: depth is tested, and what is visible is handed to a fill, run by run.
+//! What a triangle is drawn with: its set-up, the memory of a band, and what is done with colours once they are made.
 //!
 //! - In: a triangle that is set up, its rows, and the memory of a band.
-//! - Out: words and depths where the triangle is in front.
+//! - Out: these, for the loops that draw it.
 //! - Assumes: the rows lie in the band.
 //!
-//! A shader says once for all of a triangle what fills it. A small triangle is drawn at one go, see
-//! [`patch`](super::patch). Of any other each row is a span of pixels, and what is visible of a span is one run or
-//! several.
+//! Nothing but an opaque surface has [layers](Layers). The functions in them are named where a material is made
+//! transparent, or a view foggy. So only programs that do that link them.
 
-use super::fill::{Even, Fill, FillRow};
-use super::patch::is_small;
-use super::perspective::Perspective;
-use super::quality::Quality;
-use super::quality::sealed::Sealed;
-use super::shader::Pixels;
+use super::fill::Fill;
+use super::fog::Fogging;
 use crate::frame::{DepthFormat, PixelFormat, Window};
-use crate::raster::{Rows, TriangleSetup, first_visible, visible};
+use crate::raster::{Rows, TriangleSetup};
 
 /// A triangle, and the memory that it is drawn to.
 pub(crate) struct Cover<'a, F: PixelFormat, D: DepthFormat> {
@@ -28,105 +23,121 @@ pub(crate) struct Cover<'a, F: PixelFormat, D: DepthFormat> {
     pub(crate) pixels: &'a mut [F::Word],
     /// Empty if it is never tested.
     pub(crate) depth: &'a mut [D::Word],
+    pub(crate) layers: &'a Layers<F, D>,
+    pub(crate) fog: Option<&'a InFog<'a, F, D>>,
 }
 
-impl<F: PixelFormat, D: DepthFormat> Sealed for &mut Cover<'_, F, D> {}
+/// What is done with the colours of a surface: they are laid over what the band holds by how opaque they are.
+pub(crate) struct Layers<F: PixelFormat, D: DepthFormat> {
+    pub(crate) code: &'static LayerCode<F, D>,
+    /// Writes how opaque the vertices make the pixels from (x, y) on.
+    pub(crate) opacity: Option<Opacity>,
+    pub(crate) layering: Layering,
+}
 
-impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cover<'_, F, D> {
-    #[inline]
-    fn is_gray(&self) -> bool {
-        self.setup.gray
+/// The fog of a view.
+pub(crate) struct InFog<'a, F: PixelFormat, D: DepthFormat> {
+    pub(super) fogging: Fogging<'a, F>,
+    /// Draws a triangle of an opaque surface.
+    pub(super) draw_opaque: DrawFill<F, D>,
+}
+
+/// The functions that lay colours over what is there.
+pub(crate) struct LayerCode<F: PixelFormat, D: DepthFormat> {
+    /// Draws a triangle whose colours a fill makes. `None`: into the band at once, as opaque surfaces are.
+    pub(crate) draw: Option<DrawFill<F, D>>,
+    /// Lays colours over pixels, each as opaque as its byte says. `None`: they take the pixels' place where that is not 0.
+    pub(crate) blend: Option<Blend<F>>,
+    /// The same where all pixels are as opaque.
+    pub(crate) blend_evenly: Option<BlendEvenly<F>>,
+    /// The RGB565 number that colours fade to in fog, if it is not the fog's own: what changes nothing when it is blended.
+    pub(crate) fades_to: Option<u16>,
+    /// Whether pixels are left out in a pattern instead of being blended.
+    pub(crate) is_screen_door: bool,
+    /// Whether what the band holds shows through: such triangles are drawn last in a list.
+    pub(crate) reads_target: bool,
+}
+
+/// A function that draws a triangle whose colours a fill makes.
+pub(crate) type DrawFill<F, D> = fn(&mut Cover<'_, F, D>, &dyn Fill<<F as PixelFormat>::Word>);
+
+/// A function that blends: pixels, what is laid over them, and how opaque that is.
+pub(crate) type Blend<F> = fn(&mut [<F as PixelFormat>::Word], &[<F as PixelFormat>::Word], &[u8]);
+
+/// A function that blends: pixels, what is laid over them, and how opaque all of that is.
+pub(crate) type BlendEvenly<F> = fn(&mut [<F as PixelFormat>::Word], &[<F as PixelFormat>::Word], u8);
+
+/// A function that writes how opaque the vertices of a triangle make pixels.
+pub(crate) type Opacity = fn(&TriangleSetup, [i32; 2], &mut [u8]);
+
+/// How a surface is laid over what is there, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Layering {
+    /// How opaque all of it is.
+    pub(crate) alpha: u8,
+    /// Whether what is behind something is hidden.
+    pub(crate) tests_depth: bool,
+    /// Whether depth is written. `None`: unless it shows what is behind it.
+    pub(crate) writes_depth: Option<bool>,
+    /// How many steps of 16-bit depth it counts as nearer.
+    pub(crate) depth_bias: i16,
+}
+
+impl Layering {
+    pub(crate) const OPAQUE: Self = Self { alpha: 255, tests_depth: true, writes_depth: None, depth_bias: 0 };
+}
+
+impl<F: PixelFormat, D: DepthFormat> LayerCode<F, D> {
+    /// Of an opaque surface.
+    pub(crate) const OPAQUE: Self = Self {
+        draw: None,
+        blend: None,
+        blend_evenly: None,
+        fades_to: None,
+        is_screen_door: false,
+        reads_target: false,
+    };
+    /// Of a shader that shows what is behind it.
+    pub(crate) const READS_TARGET: Self = Self { reads_target: true, ..Self::OPAQUE };
+}
+
+impl<F: PixelFormat, D: DepthFormat> Layers<F, D> {
+    /// Of an opaque surface.
+    pub(crate) const OPAQUE: Self =
+        Self { code: &LayerCode::OPAQUE, opacity: None, layering: Layering::OPAQUE };
+
+    /// Whether depth is written.
+    pub(crate) fn writes_depth(&self) -> bool {
+        self.layering.writes_depth.unwrap_or(!self.code.reads_target)
     }
 
-    #[inline]
-    fn fill_evenly(self, word: F::Word) {
-        self.draw(&Even(word));
-    }
-
-    #[inline]
-    fn fill<const N: usize, L: Fill<F::Word> + FillRow<N, Word = F::Word>>(self, fill: &L) {
-        self.draw(fill);
-    }
-
-    #[inline]
-    fn fill_rows(self, fill: &dyn Fill<F::Word>) {
-        self.draw_rows(fill);
+    /// Whether they do the same.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        core::ptr::eq(self.code, other.code)
+            && self.opacity.is_none()
+            && other.opacity.is_none()
+            && self.layering == other.layering
     }
 }
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
+    /// What draws a triangle whose colours a fill makes, if it is not drawn as opaque surfaces are.
     #[inline]
-    fn draw<const N: usize, L: Fill<F::Word> + FillRow<N, Word = F::Word>>(&mut self, fill: &L) {
-        if is_small(self.setup, self.rows) {
-            return self.draw_small(fill);
-        }
-        self.draw_rows(fill);
+    pub(super) fn drawn_by(&self) -> Option<DrawFill<F, D>> {
+        self.layers.code.draw.or(self.fog.map(|fog| fog.draw_opaque))
     }
+}
 
-    #[inline(never)]
-    fn draw_rows(&mut self, fill: &dyn Fill<F::Word>) {
-        let Self { setup, rows, window, origin, width, pixels, depth } = self;
-        let (setup, origin, width) = (*setup, *origin, *width);
-        let mut line = Perspective::new(setup, fill.units());
-        rows.each(window, |y, start, end| {
-            let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
-            let count = (end - start) as usize;
-            // In two steps: the end of a range is checked more dearly.
-            let Some(pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
-                return;
-            };
-            if !D::ALWAYS_PASSES {
-                let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
-                    return;
-                };
-                // One pixel needs no step, which takes a while in a sliver.
-                let z = match count {
-                    1 if setup.sliver => (setup.value_in_sliver(&setup.z, start, y), 0),
-                    _ => setup.at(&setup.z, start, y),
-                };
-                let passed = first_visible::<D>(depth, z);
-                if passed != Some(count) {
-                    return draw_visible::<F::Word, D>(
-                        &mut line,
-                        [start, y],
-                        pixels,
-                        (depth, z),
-                        fill,
-                        passed,
-                    );
-                }
+macro_rules! by_value {
+    ($($type:ty),*) => {$(
+        impl<F: PixelFormat, D: DepthFormat> Clone for $type {
+            fn clone(&self) -> Self {
+                *self
             }
-            line.draw(start, y, pixels, fill);
-        });
-    }
+        }
+
+        impl<F: PixelFormat, D: DepthFormat> Copy for $type {}
+    )*};
 }
 
-/// Draws what is visible of a span, some pixels of which are hidden, run by run. Of its pixels `passed` were tested
-/// and are visible, and the next one is hidden; none was tested where it is `None`.
-#[inline(never)]
-fn draw_visible<W, D: DepthFormat>(
-    line: &mut Perspective<'_>,
-    [mut x, y]: [i32; 2],
-    mut pixels: &mut [W],
-    (mut depth, (mut near_w, step)): (&mut [D::Word], (u32, i32)),
-    fill: &dyn Fill<W>,
-    passed: Option<usize>,
-) {
-    let mut run = 0..passed.unwrap_or(0);
-    let mut tested = passed.map_or(0, |passed| passed + 1);
-    loop {
-        let (done, rest) = pixels.split_at_mut(tested.min(pixels.len()));
-        if let Some(visible) = done.get_mut(run.clone())
-            && !visible.is_empty()
-        {
-            line.draw(x + run.start as i32, y, visible, fill);
-        }
-        (pixels, depth) = (rest, depth.get_mut(tested..).unwrap_or_default());
-        if depth.is_empty() {
-            return;
-        }
-        x += tested as i32;
-        near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
-        (run, tested) = visible::<D>(depth, near_w, step);
-    }
-}
+by_value!(Layers<F, D>, InFog<'_, F, D>);

@@ -8,33 +8,39 @@
 
 use super::channels::{Gray, RedBlueGreen, color, lit};
 use super::colors::Colors;
+use super::cover;
+use super::fill::{Each, Fill};
 use super::lit_texels::LitTexels;
+use super::perspective::Perspective;
 use super::quality::Quality;
 use super::recipe::Recipe;
 use super::shader::{Pixels, Varying};
 use super::texels::Texels;
 use crate::frame::PixelFormat;
 use crate::geometry::Inputs;
+use crate::raster::TriangleSetup;
+use core::marker::PhantomData;
 use sealed::Sealed;
 
-/// A kind of [`Material`](crate::Material): [`Flat`], [`Gouraud`], [`Textured`], [`Clamped`], and what [light](Kind::Lit)
-/// makes of them.
+/// A kind of [`Material`](crate::Material): [`Flat`], [`Gouraud`], [`Textured`], [`Clamped`], what [light](LitKind) makes of them,
+/// and [`CutOut`] and [`VertexAlpha`] of these.
 pub trait Kind: Sealed + 'static {
-    /// What a material of this kind becomes in light.
-    type Lit: Kind;
-
     /// Which attributes it reads.
     #[doc(hidden)]
     const INPUTS: Inputs;
-    /// The colour that light is multiplied by.
-    #[doc(hidden)]
-    const BASE: Base;
     /// Whether its texture may be packed.
     #[doc(hidden)]
     const IS_PACKED: bool = false;
     /// Whether it has a loop for small triangles.
     #[doc(hidden)]
     const HAS_SMALL: bool = true;
+
+    /// Writes how opaque the vertices make pixels, if they do.
+    #[doc(hidden)]
+    #[must_use]
+    fn opacity<Q: Quality>() -> Option<Opacity> {
+        None
+    }
 
     /// The word of one pixel.
     #[doc(hidden)]
@@ -44,6 +50,31 @@ pub trait Kind: Sealed + 'static {
     #[doc(hidden)]
     fn paint<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &Recipe<'_>, pixels: P);
 }
+
+/// A [`Kind`] on which light may fall.
+pub trait LitKind: Kind {
+    /// What a material of this kind becomes in light.
+    type Lit: LitKind;
+
+    /// The colour that light is multiplied by.
+    #[doc(hidden)]
+    const BASE: Base;
+}
+
+/// A [`Kind`] of texels: those can be [cut out](crate::Material::cut_out).
+pub trait TexelKind: Kind {
+    /// Whether border texels are seen beyond the texture's borders.
+    #[doc(hidden)]
+    const IS_CLAMPED: bool;
+}
+
+/// A [`Kind`] that does not need the vertices' colours, so that they can say [how opaque](crate::Material::vertex_alpha) it is.
+pub trait ColorlessKind: Kind {}
+
+/// How opaque the pixels of a triangle are from (x, y) on.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Opacity(pub(super) cover::Opacity);
 
 /// What light is multiplied by.
 #[doc(hidden)]
@@ -81,8 +112,18 @@ pub struct Clamped;
 #[derive(Clone, Copy, Debug)]
 pub struct LitClamped;
 
+/// A texture with texels that are left out.
+#[derive(Clone, Copy, Debug)]
+pub struct CutOut<K>(PhantomData<K>);
+
+/// How opaque it is, the vertices say.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexAlpha<K>(PhantomData<K>);
+
 pub(crate) mod sealed {
     pub trait Sealed {}
+    impl<K> Sealed for super::CutOut<K> {}
+    impl<K> Sealed for super::VertexAlpha<K> {}
     impl Sealed for super::Flat {}
     impl Sealed for super::Gouraud {}
     impl Sealed for super::Textured {}
@@ -91,11 +132,13 @@ pub(crate) mod sealed {
     impl Sealed for super::LitClamped {}
 }
 
-impl Kind for Flat {
+impl LitKind for Flat {
     type Lit = Gouraud;
-
-    const INPUTS: Inputs = Inputs::None;
     const BASE: Base = Base::Material;
+}
+
+impl Kind for Flat {
+    const INPUTS: Inputs = Inputs::None;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, _: &Varying) -> F::Word {
         F::rgb565(recipe.color)
@@ -107,11 +150,13 @@ impl Kind for Flat {
     }
 }
 
-impl Kind for Gouraud {
+impl LitKind for Gouraud {
     type Lit = Self;
-
-    const INPUTS: Inputs = Inputs::Color;
     const BASE: Base = Base::Same;
+}
+
+impl Kind for Gouraud {
+    const INPUTS: Inputs = Inputs::Color;
 
     fn color<F: PixelFormat>(_: &Recipe<'_>, varying: &Varying) -> F::Word {
         color::<F>(channels_of(varying))
@@ -128,11 +173,13 @@ impl Kind for Gouraud {
     }
 }
 
-impl Kind for Textured {
+impl LitKind for Textured {
     type Lit = LitTextured;
-
-    const INPUTS: Inputs = Inputs::Uv;
     const BASE: Base = Base::White;
+}
+
+impl Kind for Textured {
+    const INPUTS: Inputs = Inputs::Uv;
     const IS_PACKED: bool = true;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
@@ -151,11 +198,13 @@ impl Kind for Textured {
     }
 }
 
-impl Kind for LitTextured {
+impl LitKind for LitTextured {
     type Lit = Self;
-
-    const INPUTS: Inputs = Inputs::UvColor;
     const BASE: Base = Base::Same;
+}
+
+impl Kind for LitTextured {
+    const INPUTS: Inputs = Inputs::UvColor;
     const IS_PACKED: bool = true;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
@@ -178,11 +227,13 @@ impl Kind for LitTextured {
     }
 }
 
-impl Kind for Clamped {
+impl LitKind for Clamped {
     type Lit = LitClamped;
-
-    const INPUTS: Inputs = Inputs::Uv;
     const BASE: Base = Base::White;
+}
+
+impl Kind for Clamped {
+    const INPUTS: Inputs = Inputs::Uv;
     const HAS_SMALL: bool = false;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
@@ -197,11 +248,13 @@ impl Kind for Clamped {
     }
 }
 
-impl Kind for LitClamped {
+impl LitKind for LitClamped {
     type Lit = Self;
-
-    const INPUTS: Inputs = Inputs::UvColor;
     const BASE: Base = Base::Same;
+}
+
+impl Kind for LitClamped {
+    const INPUTS: Inputs = Inputs::UvColor;
     const HAS_SMALL: bool = false;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
@@ -222,6 +275,102 @@ impl Kind for LitClamped {
             });
         }
     }
+}
+
+macro_rules! texel_kinds {
+    ($($kind:ident: $lit:ident $is_clamped:literal),*) => {$(
+        impl TexelKind for $kind {
+            const IS_CLAMPED: bool = $is_clamped;
+        }
+
+        impl LitKind for CutOut<$kind> {
+            type Lit = CutOut<$lit>;
+            const BASE: Base = <$kind as LitKind>::BASE;
+        }
+    )*};
+}
+
+texel_kinds!(
+    Textured: LitTextured false,
+    LitTextured: LitTextured false,
+    Clamped: LitClamped true,
+    LitClamped: LitClamped true
+);
+
+impl ColorlessKind for Flat {}
+impl ColorlessKind for Textured {}
+impl ColorlessKind for Clamped {}
+impl ColorlessKind for CutOut<Textured> {}
+impl ColorlessKind for CutOut<Clamped> {}
+
+impl<K: TexelKind> CutOut<K> {
+    /// The texel at coordinates of I16F16, if it is there.
+    #[inline]
+    fn texel(recipe: &Recipe<'_>, u: i32, v: i32) -> Option<u16> {
+        let (texture, [u, v]) = (&recipe.texture, [u >> 16, v >> 16]);
+        let [u, v] = if K::IS_CLAMPED { texture.clamped(u, v) } else { [u, v] };
+        let texel = texture.fetch_repeat(u, v);
+        let is_there = match &recipe.mask {
+            Some(mask) => mask.is_there(u, v),
+            None => texel != recipe.color,
+        };
+        is_there.then_some(texel)
+    }
+}
+
+/// In one form of perspective for color and mask, so that a texel is never drawn where the next one is left out.
+impl<K: TexelKind> Kind for CutOut<K> {
+    const INPUTS: Inputs = K::INPUTS;
+    const HAS_SMALL: bool = false;
+
+    fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
+        K::color::<F>(recipe, varying)
+    }
+
+    #[inline]
+    fn paint<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &Recipe<'_>, pixels: P) {
+        if matches!(K::INPUTS, Inputs::Uv) {
+            pixels.shade_some(|[u, v]| Self::texel(recipe, u, v).map(F::rgb565));
+        } else if pixels.is_gray() {
+            pixels.shade_some(|[u, v, light]| {
+                Self::texel(recipe, u, v).map(|texel| lit::<F>(texel, whole([light; 3])))
+            });
+        } else {
+            pixels.shade_some(|[u, v, light @ ..]: [i32; 5]| {
+                Self::texel(recipe, u, v).map(|texel| lit::<F>(texel, whole(light)))
+            });
+        }
+    }
+}
+
+impl<K: ColorlessKind> Kind for VertexAlpha<K> {
+    const INPUTS: Inputs = if matches!(K::INPUTS, Inputs::Uv) { Inputs::UvColor } else { Inputs::Color };
+    const IS_PACKED: bool = K::IS_PACKED;
+    const HAS_SMALL: bool = false;
+
+    fn opacity<Q: Quality>() -> Option<Opacity> {
+        let is_textured = matches!(K::INPUTS, Inputs::Uv);
+        Some(Opacity(if is_textured { opacity_after_uv::<Q> } else { opacity::<Q> }))
+    }
+
+    fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
+        K::color::<F>(recipe, varying)
+    }
+
+    #[inline]
+    fn paint<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &Recipe<'_>, pixels: P) {
+        K::paint::<F, Q, P>(recipe, pixels);
+    }
+}
+
+fn opacity<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
+    let fill = Each::<1, Q, u8, _>::new(|[alpha]: [i32; 1]| (alpha >> 16) as u8);
+    Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
+}
+
+fn opacity_after_uv<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
+    let fill = Each::<3, Q, u8, _>::new(|[_, _, alpha]: [i32; 3]| (alpha >> 16) as u8);
+    Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
 }
 
 /// Channels of I16F16, 0 … 255.996, without their fractions.

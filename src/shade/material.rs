@@ -4,13 +4,17 @@
 //! - Out: a recipe, and the type that says which loops draw it.
 //! - Assumes: nothing.
 
-use super::kinds::{Base, Clamped, Flat, Gouraud, Kind, Textured};
+use super::blend::{Additive, Layer, Multiply, Opaque, ScreenDoor};
+use super::cover::Layering;
+use super::kinds::{
+    Base, Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, LitKind, TexelKind, Textured, VertexAlpha,
+};
 use super::quality::{Affine, Exact, Quality, QuarterPixel};
 use super::recipe::Recipe;
 use super::shader::{Pixels, Shader, Varying};
 use crate::frame::PixelFormat;
 use crate::geometry::{Coloring, Cull, Inputs};
-use crate::scene::Texture;
+use crate::scene::{Mask, Texture};
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{Rgb565, raw::RawU16};
@@ -20,7 +24,8 @@ use embedded_graphics::prelude::RawData;
 /// [view](crate::View).
 ///
 /// A material is a small value; it borrows its texture and nothing else. The type says which loops draw it, so that only
-/// the loops that a program names are in its flash: `K` is the [kind](Kind) of material, and `Q` the [quality](Quality).
+/// the loops that a program names are in its flash: `K` is the [kind](Kind) of material, `Q` the [quality](Quality), and `L`
+/// how it is [laid](Layer) over what is there.
 ///
 /// ```
 /// use fixel::material::Gouraud;
@@ -31,22 +36,26 @@ use embedded_graphics::prelude::RawData;
 /// let floor = Material::textured(&CHECKS).texture_scale(4).lit();
 /// # let _ = (gold, floor);
 /// ```
-pub struct Material<'a, K, Q = QuarterPixel> {
+pub struct Material<'a, K, Q = QuarterPixel, L = Opaque> {
     pub(super) recipe: Recipe<'a>,
+    pub(super) layering: Layering,
     pub(super) coloring: Coloring,
     pub(super) cull: Cull,
-    kind: PhantomData<fn() -> (K, Q)>,
+    kind: PhantomData<Types<K, Q, L>>,
 }
 
-impl<K, Q> Clone for Material<'_, K, Q> {
+/// What is known of a material by its type, and takes no memory.
+type Types<K, Q, L> = fn() -> (K, Q, L);
+
+impl<K, Q, L> Clone for Material<'_, K, Q, L> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<K, Q> Copy for Material<'_, K, Q> {}
+impl<K, Q, L> Copy for Material<'_, K, Q, L> {}
 
-impl<K, Q> fmt::Debug for Material<'_, K, Q> {
+impl<K, Q, L> fmt::Debug for Material<'_, K, Q, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Material")
             .field("recipe", &self.recipe)
@@ -57,7 +66,8 @@ impl<K, Q> fmt::Debug for Material<'_, K, Q> {
 
 impl<'a, K> Material<'a, K> {
     const fn new(recipe: Recipe<'a>) -> Self {
-        Self { recipe, coloring: Coloring::OWN, cull: Cull::Back, kind: PhantomData }
+        let (layering, coloring) = (Layering::OPAQUE, Coloring::OWN);
+        Self { recipe, layering, coloring, cull: Cull::Back, kind: PhantomData }
     }
 }
 
@@ -94,27 +104,28 @@ impl<'a> Material<'a, Clamped> {
     }
 }
 
-impl<'a, K, Q> Material<'a, K, Q> {
+impl<'a, K, Q, L> Material<'a, K, Q, L> {
     /// The same, exact at every pixel.
     #[must_use]
-    pub const fn exact(self) -> Material<'a, K, Exact> {
+    pub const fn exact(self) -> Material<'a, K, Exact, L> {
         self.cast()
     }
 
     /// The same without perspective.
     #[must_use]
-    pub const fn affine(self) -> Material<'a, K, Affine> {
+    pub const fn affine(self) -> Material<'a, K, Affine, L> {
         self.cast()
     }
 
     /// The same in another quality.
     #[must_use]
-    pub const fn quality<P>(self) -> Material<'a, K, P> {
+    pub const fn quality<P>(self) -> Material<'a, K, P, L> {
         self.cast()
     }
 
-    const fn cast<L, P>(self) -> Material<'a, L, P> {
-        Material { recipe: self.recipe, coloring: self.coloring, cull: self.cull, kind: PhantomData }
+    pub(super) const fn cast<K2, Q2, L2>(self) -> Material<'a, K2, Q2, L2> {
+        let Self { recipe, layering, coloring, cull, .. } = self;
+        Material { recipe, layering, coloring, cull, kind: PhantomData }
     }
 
     /// The same with other sides left out; without this, backs are.
@@ -139,18 +150,95 @@ impl<'a, K, Q> Material<'a, K, Q> {
     /// fill shows a texture of 64 texels 16384 times. For textures that repeat.
     #[must_use]
     pub const fn texture_scale(self, log2: u8) -> Self {
-        let recipe = Recipe { scale_log2: if log2 > 8 { 8 } else { log2 }, ..self.recipe };
+        self.with(Recipe { scale_log2: if log2 > 8 { 8 } else { log2 }, ..self.recipe })
+    }
+
+    /// The same with its light added to what is there: min(t + s·a / 255, m) for each channel, s being the
+    /// material's, t what is there, m the greatest value, and a the [alpha](Material::alpha), 255 without one. Nothing is
+    /// hidden, and no depth written.
+    #[must_use]
+    pub const fn additive(self) -> Material<'a, K, Q, Additive> {
+        self.cast()
+    }
+
+    /// The same as a coloured glass, through which all else is seen: t·s / m for each channel, s being the material's, t
+    /// what is there, and m the greatest value. Nothing is hidden, and no depth written.
+    #[must_use]
+    pub const fn multiply(self) -> Material<'a, K, Q, Multiply> {
+        self.cast()
+    }
+
+    /// The same with pixels left out instead of blended: with an [alpha](Material::alpha) of a, 0 … 255, those are drawn that have
+    /// a > 255·(b + ½) / 64, b being a pixel's number, 0 … 63, in Bayer's pattern of 8×8 on the screen. So it hides what is behind it,
+    /// writes depth, and needs no order.
+    #[must_use]
+    pub const fn screen_door(self) -> Material<'a, K, Q, ScreenDoor> {
+        self.cast()
+    }
+
+    const fn with(self, recipe: Recipe<'a>) -> Self {
         Self { recipe, ..self }
     }
 }
 
-impl<'a, K: Kind, Q> Material<'a, K, Q> {
+impl<'a, K, Q, L: Layer> Material<'a, K, Q, L> {
+    /// The same as opaque as `alpha` says, of 255: (s·a + t·(255 − a)) / 255 for each channel, s being the material's, t what
+    /// is there, and a alpha (source over). It is hidden by what is in front, and writes no depth.
+    ///
+    /// Such materials have to be drawn after all that is opaque, and from back to front: a [list](crate::DisplayList) does
+    /// that by itself.
+    #[must_use]
+    pub const fn alpha(self, alpha: u8) -> Material<'a, K, Q, L::Alpha> {
+        Self { layering: Layering { alpha, ..self.layering }, ..self }.cast()
+    }
+
+    /// The same without being hidden by what is in front, if `tests` is false, and without hiding what comes after it, if `writes` is.
+    #[must_use]
+    pub const fn depth(self, tests: bool, writes: bool) -> Material<'a, K, Q, L::Masked> {
+        let layering = Layering { tests_depth: tests, writes_depth: Some(writes), ..self.layering };
+        Self { layering, ..self }.cast()
+    }
+
+    /// The same, counted as nearer than it is by so many steps of 16-bit depth (2⁻¹⁶ of near/w), or as farther where that is
+    /// below 0; limited to the planes. For decals: marks on a wall, in whose plane they lie, want 8 (in 300 views from all sides 6 were enough, 2 left 13 with holes).
+    #[must_use]
+    pub const fn depth_bias(self, steps: i16) -> Material<'a, K, Q, L::Masked> {
+        Self { layering: Layering { depth_bias: steps, ..self.layering }, ..self }.cast()
+    }
+}
+
+impl<'a, K: TexelKind, Q, L: Layer> Material<'a, K, Q, L> {
+    /// The same without the texels of this colour: there is nothing where they would be, and no depth is written. For leaves
+    /// and fences.
+    #[must_use]
+    pub fn cut_out(self, key: Rgb565) -> Material<'a, CutOut<K>, Q, L::Masked> {
+        let color = RawU16::from(key).into_inner();
+        self.with(Recipe { color, mask: None, ..self.recipe }).cast()
+    }
+
+    /// The same with the texels only that a mask has; as [`Material::cut_out`].
+    #[must_use]
+    pub const fn masked(self, mask: &Mask<'a>) -> Material<'a, CutOut<K>, Q, L::Masked> {
+        self.with(Recipe { mask: Some(*mask), ..self.recipe }).cast()
+    }
+}
+
+impl<'a, K: ColorlessKind, Q, L: Layer> Material<'a, K, Q, L> {
+    /// The same as opaque as its vertices say, times [alpha](Material::alpha): as red of their colour, which is not needed
+    /// for anything else, blended between them. See [`Vertex::alpha`](crate::Vertex::alpha).
+    #[must_use]
+    pub const fn vertex_alpha(self) -> Material<'a, VertexAlpha<K>, Q, L::Alpha> {
+        self.cast()
+    }
+}
+
+impl<'a, K: LitKind, Q, L> Material<'a, K, Q, L> {
     /// The same in the light of the view ([`Camera::lit_by`](crate::Camera::lit_by)): once a vertex, by its normal, and
     /// blended between the vertices (Gouraud shading). Colours and texels are multiplied by the light.
     ///
     /// In a view without lights it is seen as if it were not lit.
     #[must_use]
-    pub const fn lit(self) -> Material<'a, K::Lit, Q> {
+    pub const fn lit(self) -> Material<'a, K::Lit, Q, L> {
         let base = match K::BASE {
             Base::Same => self.coloring,
             Base::Material => self.coloring.with_base(channels(self.recipe.color)),

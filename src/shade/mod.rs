@@ -1,16 +1,23 @@
 //! From runs of pixels to colours.
 
 mod bent;
+mod blend;
+mod blended;
 mod channels;
 mod colors;
 mod cover;
 mod curve;
 mod fill;
+mod fog;
+mod fragment;
 mod inverses;
 mod kinds;
+mod layered;
 mod lit_texels;
 mod material;
+mod opaque;
 mod packed;
+mod paint;
 mod patch;
 mod perspective;
 mod quality;
@@ -22,14 +29,20 @@ mod surface;
 mod texels;
 mod traits;
 mod units;
+mod visible;
 
-pub(crate) use cover::Cover;
-pub use kinds::{Clamped, Flat, Gouraud, Kind, LitClamped, LitTextured, Textured};
+pub use blend::{Additive, Layer, LayerIn, Masked, Multiply, Opaque, Over, ScreenDoor};
+pub(crate) use cover::{Cover, InFog, Layers};
+pub use fog::Fog;
+pub use kinds::{
+    Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, LitClamped, LitKind, LitTextured, TexelKind,
+    Textured, VertexAlpha,
+};
 pub use material::Material;
 pub(crate) use patch::is_small;
 pub use quality::{Affine, Exact, Quality, QuarterPixel};
 pub(crate) use run::Run;
-pub use shader::{Pixels, Shader, Varying};
+pub use shader::{Fragment, Pixels, Reach, Shader, Varying};
 pub(crate) use surface::Look;
 pub use surface::Surface;
 pub(crate) use traits::Traits;

@@ -7,7 +7,7 @@ use crate::raster::Straight;
 ///
 /// The error is measured in pixels on the screen: the error of an attribute, divided by
 /// its largest change over one pixel step (at least 1 texel or 1/255).
-pub trait Quality: sealed::Sealed {
+pub trait Quality: sealed::Sealed + Send + Sync + 'static {
     /// Which triangles' attributes count as linear on the screen.
     #[doc(hidden)]
     const STRAIGHT: Straight;

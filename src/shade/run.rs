@@ -39,6 +39,9 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
     fn fill_rows(self, fill: &dyn Fill<W>) {
         self.draw(fill);
     }
+
+    /// Never asked for: pictures without a buffer take no surfaces that leave pixels out.
+    fn fill_some(self, _: &dyn Fill<Option<W>>) {}
 }
 
 impl<W> Run<'_, W> {

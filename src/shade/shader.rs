@@ -8,7 +8,7 @@ use super::fill::{Each, Fill, FillRow};
 use super::quality::{Quality, sealed::Sealed};
 use crate::frame::PixelFormat;
 use crate::geometry::{Coloring, Cull, Inputs};
-use crate::num::I16F16;
+use crate::num::{I16F16, U1F31};
 
 /// The attributes at one pixel centre; those that a shader does not read are 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub struct Varying {
 }
 
 impl Varying {
-    fn new([u, v, red, green, blue]: [i32; 5]) -> Self {
+    pub(super) fn new([u, v, red, green, blue]: [i32; 5]) -> Self {
         Self {
             u: I16F16::from_bits(u),
             v: I16F16::from_bits(v),
@@ -31,7 +31,34 @@ impl Varying {
     }
 }
 
+/// What a [`Shader`] needs to know of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Its attributes: the fastest, and all that [materials](crate::Material) need.
+    Attributes,
+    /// Where it is on the screen and how far away, too; and it may be left out.
+    Place,
+    /// What the target holds, too. In a list such triangles are drawn last, from back to front, and they write no depth.
+    Target,
+}
+
+/// One pixel of a triangle, for [`Shader::fragment`].
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment<W> {
+    /// The attributes at its centre.
+    pub varying: Varying,
+    /// Its column and its row on the screen.
+    pub place: [i32; 2],
+    /// near/w, as depth has it: 1 at the near plane and less beyond.
+    pub near_w: U1F31,
+    /// What the target holds.
+    pub target: W,
+}
+
 /// What a pixel shows. [`Material`](crate::Material) is the shader that comes with the crate.
+///
+/// A shader may be an `enum` of several, each with numbers of its own: it is asked once for many pixels how to
+/// [paint](Shader::paint) them.
 ///
 /// ```
 /// use fixel::{Cull, Inputs, QuarterPixel, Shader, Varying};
@@ -53,11 +80,20 @@ pub trait Shader<F: PixelFormat> {
     /// How exactly the attributes follow perspective.
     type Quality: Quality;
 
+    /// What it needs to know of a pixel beside its attributes. If it is more than those, [`Shader::fragment`] is asked, and
+    /// neither [`Shader::color`] nor [`Shader::paint`].
+    const REACH: Reach = Reach::Attributes;
+
     /// Which attributes [`Shader::color`] reads; the fewer, the faster.
     fn inputs(&self) -> Inputs;
 
     /// The pixel word for the attributes at one pixel centre.
     fn color(&self, varying: &Varying) -> F::Word;
+
+    /// The pixel word for a pixel, or `None` to leave it out: then its depth stays, too.
+    fn fragment(&self, fragment: &Fragment<F::Word>) -> Option<F::Word> {
+        Some(self.color(&fragment.varying))
+    }
 
     /// Which side of a triangle [`Camera::draw`](crate::Camera::draw) leaves out.
     fn cull(&self) -> Cull {
@@ -157,12 +193,22 @@ pub trait Pixels<W, Q: Quality>: Sealed + Sized {
     #[doc(hidden)]
     fn fill_rows(self, fill: &dyn Fill<W>);
 
+    #[doc(hidden)]
+    fn fill_some(self, fill: &dyn Fill<Option<W>>);
+
     /// Fills each with `color` of the first `N` attributes that the shader [reads](Shader::inputs), as bits of I16F16: u and v,
     /// then red, green and blue, or one grey. They never leave the range of the triangle's corners, and u and v are less than the
     /// greatest value there, unless they are the same at all three. Of more than five attributes nothing is filled.
     #[inline]
     fn shade<const N: usize>(self, color: impl Fn([i32; N]) -> W) {
         self.fill(&Each::<N, Q, W, _>::new(color));
+    }
+
+    /// As [`Pixels::shade`], row by row, without those pixels of which `color` makes nothing.
+    #[doc(hidden)]
+    #[inline]
+    fn shade_some<const N: usize>(self, color: impl Fn([i32; N]) -> Option<W>) {
+        self.fill_some(&Each::<N, Q, Option<W>, _>::new(color));
     }
 
     /// As [`Pixels::shade`], [row by row](Pixels::fill_rows).

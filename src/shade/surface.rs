@@ -7,15 +7,20 @@
 //! A mesh is drawn by one copy of the code before the pixels, whatever its surface. What a type says beyond that, which loops
 //! fill its pixels, stands in a function that is called once a triangle.
 
-use super::cover::Cover;
-use super::kinds::Kind;
+use super::blend::{Code, LayerIn, Opaque};
+use super::cover::{Cover, InFog, LayerCode, Layers};
+use super::fog::{Fog, Fogging};
+use super::kinds::{Kind, Opacity};
 use super::material::Material;
 use super::quality::Quality;
 use super::recipe::Recipe;
-use super::shader::Shader;
+use super::shader::{Reach, Shader};
 use super::traits::Traits;
-use crate::frame::{DepthFormat, PixelFormat};
+use super::{fragment, opaque};
+use crate::frame::{BlendFormat, DepthFormat, PixelFormat};
 use crate::geometry::{Coloring, Cull};
+use crate::raster::Needs;
+use crate::scene::Camera;
 use core::fmt;
 
 /// What a mesh is drawn with: a [`Material`], or a [`Shader`] of yours.
@@ -27,7 +32,7 @@ use core::fmt;
 /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 /// use fixel::{Depth16, Material, Surface};
 /// let surfaces: [Surface<Rgb565, Depth16>; 2] =
-///     [(&Material::flat(Rgb565::CSS_GOLD)).into(), (&Material::gouraud().exact()).into()];
+///     [Material::flat(Rgb565::CSS_GOLD).surface(), Material::gouraud().exact().surface()];
 /// # let _ = surfaces;
 /// ```
 pub struct Surface<'a, F: PixelFormat, D: DepthFormat> {
@@ -39,6 +44,9 @@ pub struct Surface<'a, F: PixelFormat, D: DepthFormat> {
 /// What of a surface is needed after its vertices were coloured.
 pub(crate) struct Look<'a, F: PixelFormat, D: DepthFormat> {
     pub(crate) traits: Traits,
+    pub(crate) layers: Layers<F, D>,
+    /// Whether a shader asks for the place of a pixel.
+    reads_place: bool,
     painter: Painter<'a, F, D>,
 }
 
@@ -54,7 +62,11 @@ trait Paint<F: PixelFormat, D: DepthFormat> {
 
 impl<F: PixelFormat, D: DepthFormat, S: Shader<F>> Paint<F, D> for S {
     fn paint_cover(&self, cover: &mut Cover<'_, F, D>) {
-        self.paint(cover);
+        if S::REACH == Reach::Attributes {
+            self.paint(cover);
+        } else {
+            fragment::draw(self, cover);
+        }
     }
 }
 
@@ -69,23 +81,67 @@ impl<'a, F: PixelFormat, D: DepthFormat> Surface<'a, F, D> {
     /// That of a shader, which stays borrowed. It may be shared with the other core of a chip (`Sync`).
     #[must_use]
     pub fn new<S: Shader<F> + Sync>(shader: &'a S) -> Self {
-        Self::painted(shader, Painter::Shader(shader))
-    }
-
-    fn painted<S: Shader<F>>(shader: &S, painter: Painter<'a, F, D>) -> Self {
+        let reads_target = S::REACH == Reach::Target;
+        let code = if reads_target { &LayerCode::READS_TARGET } else { &LayerCode::OPAQUE };
+        let layers = Layers { code, ..Layers::OPAQUE };
+        let traits = Traits::of(shader);
+        let traits = if S::REACH == Reach::Attributes { traits } else { traits.without_small() };
         Self {
             cull: shader.cull(),
             coloring: shader.coloring(),
-            look: Look { traits: Traits::of(shader), painter },
+            look: Look {
+                traits,
+                layers,
+                reads_place: S::REACH != Reach::Attributes,
+                painter: Painter::Shader(shader),
+            },
         }
     }
 }
 
-impl<'a, F: PixelFormat, D: DepthFormat, K: Kind, Q: Quality> From<&Material<'a, K, Q>>
-    for Surface<'a, F, D>
+impl<'a, F: BlendFormat, D: DepthFormat> InFog<'a, F, D> {
+    /// Fog before a camera.
+    pub(crate) fn new(fog: &Fog<'a>, camera: &Camera) -> Self {
+        Self { fogging: Fogging::new(*fog, camera), draw_opaque: opaque::draw_in_fog }
+    }
+}
+
+impl<'a, F, D, K, Q, L> From<&Material<'a, K, Q, L>> for Surface<'a, F, D>
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    K: Kind,
+    Q: Quality,
+    L: LayerIn<F>,
 {
-    fn from(material: &Material<'a, K, Q>) -> Self {
-        Self::painted(material, Painter::Material(material.recipe, paint_material::<F, D, K, Q>))
+    fn from(material: &Material<'a, K, Q, L>) -> Self {
+        let Code(code) = L::code();
+        let opacity = K::opacity::<Q>().map(|Opacity(write)| write);
+        let layers = Layers { code, opacity, layering: material.layering };
+        let traits = Traits::of::<F, _>(&material.cast::<K, Q, Opaque>());
+        let traits = if code.draw.is_some() { traits.without_small() } else { traits };
+        let traits = if opacity.is_some() { traits.with_gray() } else { traits };
+        Self {
+            cull: material.cull,
+            coloring: material.coloring,
+            look: Look {
+                traits,
+                layers,
+                reads_place: false,
+                painter: Painter::Material(material.recipe, paint_material::<F, D, K, Q>),
+            },
+        }
+    }
+}
+
+impl<'a, K: Kind, Q: Quality, L> Material<'a, K, Q, L> {
+    /// The surface of this material: what `&material` turns into where it is drawn with.
+    #[must_use]
+    pub fn surface<F: PixelFormat, D: DepthFormat>(self) -> Surface<'a, F, D>
+    where
+        L: LayerIn<F>,
+    {
+        Surface::from(&self)
     }
 }
 
@@ -99,6 +155,7 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
     /// Whether pixels of both come out the same.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         self.traits == other.traits
+            && self.layers.is_like(&other.layers)
             && match (&self.painter, &other.painter) {
                 (Painter::Material(recipe, paint), Painter::Material(other, other_paint)) => {
                     recipe == other && core::ptr::fn_addr_eq(*paint, *other_paint)
@@ -106,6 +163,14 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
                 (Painter::Shader(shader), Painter::Shader(other)) => core::ptr::eq(*shader, *other),
                 _ => false,
             }
+    }
+
+    /// What set-up has to do, before a camera that may be orthographic, with colours that may all be grey, in fog or not.
+    pub(crate) fn needs(&self, [is_orthographic, is_gray]: [bool; 2], is_foggy: bool) -> Needs {
+        let depth = !D::ALWAYS_PASSES || is_foggy || self.reads_place;
+        let mut needs = self.traits.needs(depth, is_orthographic, is_gray);
+        needs.small &= !is_foggy;
+        needs
     }
 
     /// Draws a triangle that is set up.

@@ -17,6 +17,8 @@ pub(crate) struct Traits {
     straight: Straight,
     every_pixel: bool,
     has_small: bool,
+    /// Whether only the first channel of colours is read.
+    is_gray: bool,
     scale_log2: u8,
     packed_log2: Option<[u8; 2]>,
 }
@@ -28,9 +30,20 @@ impl Traits {
             straight: S::Quality::STRAIGHT,
             every_pixel: S::Quality::EVERY_PIXEL,
             has_small: shader.has_small(),
+            is_gray: false,
             scale_log2: shader.texture_scale().min(8) as u8,
             packed_log2: shader.packed_log2().map(|log2| log2.map(|log2| log2 as u8)),
         }
+    }
+
+    /// The same, drawn row by row however small triangles are.
+    pub(crate) fn without_small(self) -> Self {
+        Self { has_small: false, ..self }
+    }
+
+    /// The same with only the first channel of colours read.
+    pub(crate) fn with_gray(self) -> Self {
+        Self { is_gray: true, ..self }
     }
 
     /// What set-up has to do, with depth or without, before a camera that may be orthographic, and with colours that
@@ -49,7 +62,7 @@ impl Traits {
             packings: [packing; 2],
             small: self.has_small,
             depth,
-            gray: is_gray,
+            gray: is_gray || self.is_gray,
         }
     }
 }

@@ -22,8 +22,11 @@ static GROUND: [Vertex; 4] = [
     Vertex::new(-5.0, -0.125, -3.75).uv(-640, 482),
 ];
 
+/// How many meshes there are. The last is the ground.
+pub(crate) const MESHES: usize = 4;
+
 /// The meshes of all scenes.
-pub(crate) fn meshes() -> [Mesh<'static>; 4] {
+pub(crate) fn meshes() -> [Mesh<'static>; MESHES] {
     let torus = TORUS.mesh();
     let ground = Mesh::try_new(&GROUND, &[[0, 1, 2], [0, 2, 3]]).expect("the indices are in range");
     [torus, torus.part(30, 55), BALL.mesh(), ground]

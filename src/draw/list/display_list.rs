@@ -7,18 +7,20 @@
 use super::capacity::CapacityError;
 use super::entries::{ListTriangle, ListVertex, ListView};
 use super::extent::Extent;
-use super::index::{BLOCK, Index, Touching, rows_of, sort, steps_of, touch};
+use super::index::{Index, Touching, steps_of, touch};
 use super::memory::ListMemory;
+use super::order::Order;
 use super::record::record;
 use super::style::Style;
 use crate::draw::canvas::Canvas;
 use crate::draw::canvas::sealed::Sealed;
+use crate::draw::sight::Sight;
 use crate::draw::triangle::Raster;
 use crate::frame::{Background, Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, MOST_CORNERS, ScreenVertex};
 use crate::math::Pose;
-use crate::scene::{Camera, Lights, Mesh, Vertex, Viewport};
-use crate::shade::{Look, Surface};
+use crate::scene::{Mesh, Vertex, Viewport};
+use crate::shade::{InFog, Look, Surface};
 use core::fmt;
 use embedded_graphics::geometry::Dimensions;
 use embedded_graphics::primitives::Rectangle;
@@ -36,7 +38,10 @@ use heapless::{Vec, VecView};
 /// vertex, and two if it has both colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are
 /// culled or out of the viewport take nothing. Draws of one mesh with one material or shader in a row count as one. A draw that does not fit is an error, and leaves the list as it was.
 ///
-/// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame. Rendering takes `&self`,
+/// Transparent triangles, those that show what is behind them, are drawn last, from back to front; all others as they were drawn to
+/// the list.
+///
+/// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order. Rendering takes `&self`,
 /// and a list is `Send` and `Sync`: two cores can render two bands.
 ///
 /// ```
@@ -68,15 +73,14 @@ use heapless::{Vec, VecView};
 pub struct DisplayList<'a, F: PixelFormat, D: DepthFormat, const N: usize> {
     vertices: &'a mut VecView<ListVertex>,
     triangles: &'a mut VecView<ListTriangle>,
-    /// Back to front: the triangles. As drawn: the rows that each [`BLOCK`] of them touch, as [`ListTriangle::rows`] has them.
-    index: &'a mut VecView<u16>,
-    is_sorted: bool,
+    order: Order<'a>,
     draws: Vec<Draw<'a, F, D>, N>,
 }
 
 /// What triangles have in common.
 struct Draw<'a, F: PixelFormat, D: DepthFormat> {
     look: Look<'a, F, D>,
+    fog: Option<InFog<'a, F, D>>,
     /// The mesh's.
     vertices: &'a [Vertex],
     viewport: Viewport,
@@ -97,7 +101,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     #[must_use]
     pub fn new<const V: usize, const T: usize>(memory: &'a mut ListMemory<V, T>) -> Self {
         let ListMemory { vertices, triangles, index } = memory;
-        let mut list = Self { vertices, triangles, index, is_sorted: false, draws: Vec::new() };
+        let mut list = Self { vertices, triangles, order: Order::new(index), draws: Vec::new() };
         list.clear();
         list
     }
@@ -106,8 +110,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     pub fn clear(&mut self) {
         self.vertices.clear();
         self.triangles.clear();
-        self.index.clear();
-        self.is_sorted = false;
+        self.order.clear();
         self.draws.clear();
     }
 
@@ -124,21 +127,15 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     /// Where triangles cut through each other, or long ones overlap in a circle, no order is right: that takes depth.
     pub fn sort_back_to_front(&mut self) {
         let view = ListView { vertices: self.vertices, triangles: self.triangles };
-        let key =
-            |id: u16| (view.triangles.get(usize::from(id)).map_or(0, |triangle| view.nearness(triangle)), id);
-        self.index.clear();
-        self.index.extend(0..view.triangles.len() as u16);
-        sort(self.index, key);
-        self.is_sorted = true;
+        self.order.sort_back_to_front(&view);
     }
 
     /// Draws rows `top` … `top` + height − 1 of the screen into a band, which becomes the band of these rows. What it holds it
-    /// keeps, as with [`Camera::draw`]: clear it first, see [`Band::clear_to`].
+    /// keeps, as with [`Camera::draw`](crate::Camera::draw): clear it first, see [`Band::clear_to`].
     pub fn render(&self, top: u32, band: &mut Band<'_, F, D>) {
         band.move_to(top);
         let view = self.view();
-        let index = if self.is_sorted { Index::Order(self.index) } else { Index::Rows(self.index) };
-        render(&view, index, &self.draws, band);
+        render(&view, self.order.index(), &self.draws, band);
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
@@ -194,6 +191,8 @@ impl<F: PixelFormat, D: DepthFormat> Draw<'_, F, D> {
     /// Whether another draw's triangles may count as this one's.
     fn is_like(&self, other: &Self) -> bool {
         self.look.is_like(&other.look)
+            && self.fog.is_none()
+            && other.fog.is_none()
             && core::ptr::eq(self.vertices, other.vertices)
             && self.viewport == other.viewport
             && self.cull == other.cull
@@ -220,7 +219,7 @@ fn render<F: PixelFormat, D: DepthFormat>(
     let kind = |draw: &Draw<'_, F, D>| [draw.is_orthographic, draw.is_gray];
     // Its first triangle, and how many it has.
     let (mut first, mut count) = (0, draw.end);
-    let mut raster = Raster::new(&draw.look, kind(draw), within(draw), band);
+    let mut raster = Raster::new((&draw.look, draw.fog.as_ref()), kind(draw), within(draw), band);
     let mut corners = [ScreenVertex::default(); 3];
     let mut seen = Touching::new(view.triangles, index, rows);
     while let Some((id, triangle)) = seen.next() {
@@ -231,7 +230,7 @@ fn render<F: PixelFormat, D: DepthFormat>(
                 return;
             };
             (draw, count) = (other, other.end - first);
-            raster.change(&draw.look, kind(draw), within(draw));
+            raster.change((&draw.look, draw.fog.as_ref()), kind(draw), within(draw));
         }
         if triangle.is_folded() {
             draw_folded(view, triangle, draw, &mut raster);
@@ -263,12 +262,13 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayL
 
     fn draw_mesh(
         &mut self,
-        (camera, lights): (&Camera, Option<&Lights<'_>>),
+        sight: &Sight<'_, 'a, F, D>,
         mesh: &Mesh<'a>,
         pose: &Pose,
         surface: &Surface<'a, F, D>,
         stats: &mut impl Count,
     ) -> Result<(), CapacityError> {
+        let &Sight { camera, lights, fog } = sight;
         let style = Style::new(surface, camera.placement(), pose, lights);
         let [vertices, triangles, draws] = self.lengths();
         let recorded = record(
@@ -286,6 +286,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayL
             }
             let draw = Draw {
                 look: surface.look,
+                fog,
                 vertices: mesh.vertices(),
                 viewport: camera.projection().viewport,
                 end: self.triangles.len() as u16,
@@ -306,16 +307,10 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayL
             self.triangles.truncate(triangles);
             return result;
         }
-        if self.is_sorted {
-            self.index.clear();
-            self.is_sorted = false;
-        }
-        let complete = self.index.len().min(triangles / BLOCK);
-        self.index.truncate(complete);
-        for block in self.triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
-            // There is room: as much as for triangles.
-            let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
-        }
+        let view = ListView { vertices: self.vertices, triangles: self.triangles };
+        self.order.add(&view, triangles, surface.look.layers.code.reads_target, || {
+            self.draws.iter().map(|draw| (draw.end, draw.look.layers.code.reads_target))
+        });
         Ok(())
     }
 }

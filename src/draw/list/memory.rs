@@ -1,6 +1,8 @@
 //! The memory of a display list: plain data, which outlives the frames that are recorded in it.
 
 use super::entries::{ListTriangle, ListVertex, MOST_SLOTS};
+use crate::geometry::MOST_CORNERS;
+use crate::scene::Mesh;
 use core::fmt;
 use heapless::Vec;
 
@@ -29,6 +31,19 @@ impl<const V: usize, const T: usize> ListMemory<V, T> {
     pub const fn new() -> Self {
         const { assert!(V <= MOST_SLOTS && T <= MOST_SLOTS, "a list has at most 65535 vertices and triangles") };
         Self { vertices: Vec::new(), triangles: Vec::new(), index: Vec::new() }
+    }
+}
+
+impl Mesh<'_> {
+    /// The most vertices and triangles that a draw of this mesh takes in a [`DisplayList`](super::DisplayList), from whatever
+    /// side, with any surface: all of its vertices, and of each triangle, as if all planes cut it, 18 corners and 7 pieces.
+    ///
+    /// Far more than a mesh takes that is not cut by a plane nor lit by its faces: there it is what the mesh has.
+    #[must_use]
+    pub const fn most_in_list(&self) -> [usize; 2] {
+        let triangles = self.triangle_count();
+        // With colour and texture a corner that is cut takes two vertices.
+        [self.vertices().len() + 2 * MOST_CORNERS * triangles, (MOST_CORNERS - 2) * triangles]
     }
 }
 

@@ -2,11 +2,13 @@
 
 mod capacity;
 mod changes;
+mod compact;
 mod display_list;
 mod entries;
 mod extent;
 mod index;
 mod memory;
+mod order;
 mod record;
 mod style;
 

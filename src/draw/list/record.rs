@@ -9,6 +9,7 @@
 //! After the last triangle the slots of the others are freed.
 
 use super::capacity::CapacityError;
+use super::compact::move_together;
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::style::Style;
 use crate::frame::Window;
@@ -91,7 +92,9 @@ pub(crate) fn record(
     recorder.place(first, stats);
     recorder.add_triangles(stats);
     recorder.fits()?;
-    Ok(recorder.move_together(first, first_triangle))
+    let Recorder { vertices, triangles, own, next, .. } = recorder;
+    let triangles = triangles.get_mut(first_triangle..).unwrap_or_default();
+    Ok(move_together(vertices, triangles, (mesh, first), style.inputs, (own, next)))
 }
 
 /// The first and the last vertex that get a slot, with all between them; `None` if no vertex does. There are `most` slots.
@@ -213,7 +216,7 @@ impl Recorder<'_, '_> {
     }
 
     /// Keeps a vertex of the mesh; returns the slot that it will have at the end, and q. When it is kept for the first time
-    /// it gets its colour, and this final slot is stored in `attributes[3]` until [`Recorder::move_together`].
+    /// it gets its colour, and this final slot is stored in `attributes[3]` until [`move_together`].
     #[inline]
     fn keep(&mut self, index: u16) -> (u16, U1F31) {
         let slot = usize::from(index).wrapping_add(self.to_slot);
@@ -321,7 +324,7 @@ impl Recorder<'_, '_> {
         self.push_triangle(ListTriangle { corners, rows });
     }
 
-    /// Appends a corner that clipping or flat shading made. Returns its slot, which [`Recorder::move_together`] will shift down.
+    /// Appends a corner that clipping or flat shading made. Returns its slot, which [`move_together`] will shift down.
     fn push(&mut self, at: &ScreenVertex) -> u16 {
         let slot = self.vertices.len();
         let uv = ListVertex::attributes_of([at.u, at.v]);
@@ -344,76 +347,5 @@ impl Recorder<'_, '_> {
         if self.vertices.len() >= MOST_SLOTS || self.vertices.push(slot).is_err() {
             self.missing[0] += 1;
         }
-    }
-
-    /// Compacts the kept vertices of the mesh, in the order in which they were kept. They also get what is still missing: u
-    /// and v, or the index of the mesh's vertex that has them. Then shifts the corners that were appended after them. Returns
-    /// whether all colours are grey.
-    #[inline(never)]
-    fn move_together(self, first: u16, first_triangle: usize) -> bool {
-        let Self { vertices, triangles, mesh, style, own, next, .. } = self;
-        let mut all_gray = style.has_color();
-        for first_of_cycle in own.clone() {
-            let Some(place) = vertices.get_mut(first_of_cycle) else {
-                break;
-            };
-            if place.q & KEPT == U1F31::ZERO {
-                continue;
-            }
-            let mut vertex = *place;
-            place.q &= !KEPT;
-            // A cycle: the vertex goes to its final slot, then the one that was there to its own. It ends at a slot whose vertex
-            // was not kept or has been moved.
-            let mut from = first_of_cycle;
-            while vertex.q & KEPT != U1F31::ZERO {
-                let to = usize::from(vertex.attributes[3]);
-                all_gray &= vertex.is_gray();
-                let index = first + (from - own.start) as u16;
-                if style.inputs == Inputs::Uv {
-                    vertex.attributes = ListVertex::attributes_of(mesh.vertex(index).uv.map(I16F16::from));
-                } else {
-                    vertex.attributes[3] = index;
-                }
-                vertex.q &= !KEPT;
-                let Some(place) = vertices.get_mut(to) else {
-                    break;
-                };
-                vertex = core::mem::replace(place, vertex);
-                from = to;
-            }
-        }
-        let freed = own.end - usize::from(next);
-        if vertices.len() > own.end {
-            all_gray &= Self::move_down(vertices, own.end, freed);
-            for corner in triangles
-                .get_mut(first_triangle..)
-                .unwrap_or_default()
-                .iter_mut()
-                .flat_map(|t| &mut t.corners)
-            {
-                if usize::from(*corner) >= own.end {
-                    *corner -= freed as u16;
-                }
-            }
-        }
-        vertices.truncate(vertices.len() - freed);
-        all_gray
-    }
-
-    /// Moves the vertices in the slots from `start` on down by `by` slots. Returns whether all their colours are grey.
-    #[cold]
-    #[inline(never)]
-    fn move_down(vertices: &mut VecView<ListVertex>, start: usize, by: usize) -> bool {
-        let mut all_gray = true;
-        for from in start..vertices.len() {
-            let Some(&vertex) = vertices.get(from) else {
-                break;
-            };
-            all_gray &= vertex.is_gray() || vertex.x == CUT_OFF;
-            if let Some(place) = vertices.get_mut(from - by) {
-                *place = vertex;
-            }
-        }
-        all_gray
     }
 }

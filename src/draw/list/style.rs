@@ -23,7 +23,7 @@ impl<'p> Style<'p> {
         lights: Option<&Lights<'_>>,
     ) -> Self {
         let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
-        let (coloring, _) = surface.coloring.colors(lights, pose);
+        let coloring = surface.coloring.colors(lights, pose);
         Self { cull, inputs: surface.look.traits.inputs, coloring }
     }
 

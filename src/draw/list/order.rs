@@ -1,0 +1,130 @@
+//! In which order a list's triangles are drawn, and the index that it is kept in.
+//!
+//! - In: the triangles of a list, and which of them are transparent: they show what is behind them.
+//! - Out: an [`Index`], by which the triangles of a band are found.
+//! - Assumes: it is told of every draw.
+
+use super::entries::{ListTriangle, ListView};
+use super::index::{BLOCK, Index, rows_of, sort};
+use heapless::VecView;
+
+/// The order of a list's triangles. There is room for as many numbers as for triangles.
+pub(super) struct Order<'a> {
+    /// In the order of drawing: the triangles. As recorded: the rows that each [`BLOCK`] of them touch, as [`ListTriangle::rows`]
+    /// has them.
+    index: &'a mut VecView<u16>,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// As they were recorded.
+    AsRecorded,
+    /// So many opaque ones as they were recorded, then the others from back to front.
+    TransparentLast(u16),
+    /// All from back to front.
+    BackToFront,
+}
+
+impl<'a> Order<'a> {
+    pub(super) fn new(index: &'a mut VecView<u16>) -> Self {
+        Self { index, kind: Kind::AsRecorded }
+    }
+
+    /// Of no triangles.
+    pub(super) fn clear(&mut self) {
+        self.index.clear();
+        self.kind = Kind::AsRecorded;
+    }
+
+    pub(super) fn index(&self) -> Index<'_> {
+        match self.kind {
+            Kind::AsRecorded => Index::Rows(self.index),
+            Kind::TransparentLast(_) | Kind::BackToFront => Index::Order(self.index),
+        }
+    }
+
+    /// Back to front.
+    pub(super) fn sort_back_to_front(&mut self, list: &ListView<'_>) {
+        self.index.clear();
+        self.index.extend(0..list.triangles.len() as u16);
+        self.sort_from(0, list);
+        self.kind = Kind::BackToFront;
+    }
+
+    /// Sorts what comes from a place of the index on: back to front, and as recorded where that is the same.
+    fn sort_from(&mut self, start: usize, list: &ListView<'_>) {
+        let key =
+            |id: u16| (list.triangles.get(usize::from(id)).map_or(0, |triangle| list.nearness(triangle)), id);
+        sort(self.index.get_mut(start..).unwrap_or_default(), key);
+    }
+
+    /// Takes in the triangles from the `first` on, those of a draw. `draws` are all draws: the triangle behind the last of
+    /// each, and whether it is transparent.
+    pub(super) fn add<D: Iterator<Item = (u16, bool)>>(
+        &mut self,
+        list: &ListView<'_>,
+        first: usize,
+        is_transparent: bool,
+        draws: impl Fn() -> D,
+    ) {
+        if self.kind == Kind::BackToFront {
+            self.forget_sorting(list, first as u16, draws);
+        }
+        let (start, end) = (first as u16, list.triangles.len() as u16);
+        if is_transparent && self.kind == Kind::AsRecorded && start < end {
+            self.index.clear();
+            self.index.extend(0..start);
+            self.kind = Kind::TransparentLast(start);
+        }
+        match self.kind {
+            Kind::TransparentLast(opaque) => {
+                self.index.extend(start..end);
+                if is_transparent {
+                    self.sort_from(opaque.into(), list);
+                } else {
+                    let moved = self.index.get_mut(opaque.into()..).unwrap_or_default();
+                    moved.rotate_right((end - start).into());
+                    self.kind = Kind::TransparentLast(opaque + end - start);
+                }
+            }
+            _ => self.index_blocks(list.triangles, first / BLOCK),
+        }
+    }
+
+    /// The order that the triangles before `end` have without having been sorted.
+    #[cold]
+    #[inline(never)]
+    fn forget_sorting<D: Iterator<Item = (u16, bool)>>(
+        &mut self,
+        list: &ListView<'_>,
+        end: u16,
+        draws: impl Fn() -> D,
+    ) {
+        self.clear();
+        for transparent in [false, true] {
+            let (opaque, mut start) = (self.index.len(), 0);
+            for (draw_end, is_transparent) in draws() {
+                if is_transparent == transparent {
+                    self.index.extend(start..draw_end.min(end));
+                }
+                start = draw_end;
+            }
+            if transparent && self.index.len() > opaque {
+                self.kind = Kind::TransparentLast(opaque as u16);
+                return self.sort_from(opaque, list);
+            }
+        }
+        self.index.clear();
+        self.index_blocks(list.triangles, 0);
+    }
+
+    /// The rows of the blocks from one on.
+    fn index_blocks(&mut self, triangles: &[ListTriangle], first: usize) {
+        let complete = self.index.len().min(first);
+        self.index.truncate(complete);
+        for block in triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
+            let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
+        }
+    }
+}

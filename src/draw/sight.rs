@@ -1,0 +1,14 @@
+//! A view, for canvases of one format.
+
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::scene::{Camera, Lights};
+use crate::shade::InFog;
+
+/// What a canvas needs to know of a view.
+#[doc(hidden)]
+#[expect(missing_debug_implementations, reason = "it is passed on at once")]
+pub struct Sight<'v, 'a, F: PixelFormat, D: DepthFormat> {
+    pub(super) camera: &'v Camera,
+    pub(super) lights: Option<&'v Lights<'v>>,
+    pub(super) fog: Option<InFog<'a, F, D>>,
+}

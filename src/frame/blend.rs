@@ -1,0 +1,106 @@
+//! Blending: what becomes of a pixel in memory when a colour is laid over it.
+//!
+//! - In: the word that is there, the word that is drawn, and how opaque it is.
+//! - Out: the word that stays.
+//! - Assumes: nothing.
+//!
+//! Channels are blended as they are stored. What comes out of one is the real number that its formula gives, rounded to the
+//! nearest step of the channel: off by at most half a step.
+
+use super::format::{BigEndian, PixelFormat};
+use embedded_graphics::pixelcolor::Rgb565;
+
+/// A pixel format whose words can be blended: for transparent materials and fog.
+///
+/// In the formulas t is a channel of what is there, s of what is drawn, m the greatest value of the channel, and a the
+/// opacity, 0 … 255.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot blend pixels",
+    label = "transparent materials and fog need a format that is `BlendFormat`",
+    note = "`Rgb565` and `BigEndian<Rgb565>` are; implement `BlendFormat` for a format of your own"
+)]
+pub trait BlendFormat: PixelFormat {
+    /// Source over target: (s·a + t·(255 − a)) / 255.
+    fn over(target: Self::Word, source: Self::Word, alpha: u8) -> Self::Word;
+
+    /// Light added: min(t + s·a / 255, m).
+    fn add(target: Self::Word, source: Self::Word, alpha: u8) -> Self::Word;
+
+    /// Seen through a coloured glass: t·s / m.
+    fn multiply(target: Self::Word, source: Self::Word) -> Self::Word;
+}
+
+/// Red in the upper half, blue in the lower one: sums and products of both at once.
+#[inline(always)]
+fn red_and_blue(word: u16) -> u32 {
+    u32::from(word >> 11) << 16 | u32::from(word & 31)
+}
+
+#[inline(always)]
+fn green(word: u16) -> u32 {
+    u32::from(word >> 5 & 63)
+}
+
+#[inline(always)]
+fn joined(red_and_blue: u32, green: u32) -> u16 {
+    ((red_and_blue >> 16) << 11 | green << 5 | red_and_blue & 31) as u16
+}
+
+/// x / 255 of two halves of up to 65279 each, rounded to nearest, and then only the lower bits of each that `mask` has.
+#[inline(always)]
+fn over_255(x: u32, mask: u32) -> u32 {
+    // x / 255 = x / 256 · (1 + 1/256 + …): exact to the nearest for every x up to 65279.
+    let x = x + 0x0080_0080;
+    (x + (x >> 8 & 0x00ff_00ff)) >> 8 & mask
+}
+
+const RED_AND_BLUE: u32 = 0x001f_001f;
+
+impl BlendFormat for Rgb565 {
+    #[inline]
+    fn over(target: u16, source: u16, alpha: u8) -> u16 {
+        let (a, rest) = (u32::from(alpha), u32::from(255 - alpha));
+        joined(
+            over_255(red_and_blue(source) * a + red_and_blue(target) * rest, RED_AND_BLUE),
+            over_255(green(source) * a + green(target) * rest, 63),
+        )
+    }
+
+    #[inline]
+    fn add(target: u16, source: u16, alpha: u8) -> u16 {
+        let a = u32::from(alpha);
+        let sum = red_and_blue(target) + over_255(red_and_blue(source) * a, RED_AND_BLUE);
+        // What carries into bit 5 of a half is too much: all five bits below it are set.
+        let carries = sum & 0x0020_0020;
+        let sum = (sum | (carries - (carries >> 5))) & RED_AND_BLUE;
+        joined(sum, (green(target) + over_255(green(source) * a, 63)).min(63))
+    }
+
+    #[inline]
+    fn multiply(target: u16, source: u16) -> u16 {
+        // 1/31 and 1/63 with 20 fraction bits: what that is off, 0.0002 at most, takes no product across a half.
+        let of_31 = |t: u32, s: u32| (t * s * 33825 + (1 << 19)) >> 20;
+        let of_63 = |t: u32, s: u32| (t * s * 16644 + (1 << 19)) >> 20;
+        let [t, s] = [target, source].map(u32::from);
+        let (red, green, blue) =
+            (of_31(t >> 11, s >> 11), of_63(t >> 5 & 63, s >> 5 & 63), of_31(t & 31, s & 31));
+        (red << 11 | green << 5 | blue) as u16
+    }
+}
+
+impl<F: BlendFormat<Word = u16>> BlendFormat for BigEndian<F> {
+    #[inline]
+    fn over(target: u16, source: u16, alpha: u8) -> u16 {
+        F::over(u16::from_be(target), u16::from_be(source), alpha).to_be()
+    }
+
+    #[inline]
+    fn add(target: u16, source: u16, alpha: u8) -> u16 {
+        F::add(u16::from_be(target), u16::from_be(source), alpha).to_be()
+    }
+
+    #[inline]
+    fn multiply(target: u16, source: u16) -> u16 {
+        F::multiply(u16::from_be(target), u16::from_be(source)).to_be()
+    }
+}

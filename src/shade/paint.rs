@@ -1,0 +1,63 @@
+//! What a shader fills a triangle with, taken to the loop that draws it.
+//!
+//! - In: a cover, and the fill that a shader chose.
+//! - Out: words and depths where the triangle is seen.
+//! - Assumes: the triangle was set up for the shader.
+
+use super::cover::Cover;
+use super::fill::{Even, Fill, FillRow};
+use super::layered::draw_some;
+use super::opaque;
+use super::patch::is_small;
+use super::quality::Quality;
+use super::quality::sealed::Sealed;
+use super::shader::Pixels;
+use crate::frame::{DepthFormat, PixelFormat};
+
+impl<F: PixelFormat, D: DepthFormat> Sealed for &mut Cover<'_, F, D> {}
+
+impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cover<'_, F, D> {
+    #[inline]
+    fn is_gray(&self) -> bool {
+        self.setup.gray
+    }
+
+    #[inline]
+    fn fill_evenly(self, word: F::Word) {
+        draw(self, &Even(word));
+    }
+
+    #[inline]
+    fn fill<const N: usize, L: Fill<F::Word> + FillRow<N, Word = F::Word>>(self, fill: &L) {
+        draw(self, fill);
+    }
+
+    #[inline]
+    fn fill_rows(self, fill: &dyn Fill<F::Word>) {
+        match self.drawn_by() {
+            Some(draw) => draw(self, fill),
+            None => opaque::draw(self, fill),
+        }
+    }
+
+    #[inline]
+    fn fill_some(self, fill: &dyn Fill<Option<F::Word>>) {
+        draw_some(self, fill);
+    }
+}
+
+#[inline]
+fn draw<const N: usize, F, D, L>(cover: &mut Cover<'_, F, D>, fill: &L)
+where
+    F: PixelFormat,
+    D: DepthFormat,
+    L: Fill<F::Word> + FillRow<N, Word = F::Word>,
+{
+    if let Some(draw) = cover.drawn_by() {
+        draw(cover, fill);
+    } else if is_small(cover.setup, cover.rows) {
+        cover.draw_small(fill);
+    } else {
+        opaque::draw(cover, fill);
+    }
+}

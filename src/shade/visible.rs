@@ -1,0 +1,92 @@
+//! What is visible of a triangle, run by run.
+//!
+//! - In: a cover, and what draws a run of pixels.
+//! - Out: depths where the triangle is in front, and what the runs draw.
+//! - Assumes: no pixel of a run is left out.
+//!
+//! Each row of a triangle is a span of pixels, and what is visible of a span is one run or several.
+
+use super::cover::Cover;
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::raster::{first_visible, visible};
+
+/// What draws a run of visible pixels from (x, y) on.
+pub(super) trait DrawRun<W> {
+    type Again<'r>: DrawRun<W>
+    where
+        Self: 'r;
+
+    fn draw_run(&mut self, x: i32, y: i32, pixels: &mut [W]);
+
+    /// The same, in a place of its own. What is lent out itself has to be read from memory again: 15 cycles a row on a
+    /// Cortex-M0+.
+    fn again(&mut self) -> Self::Again<'_>;
+}
+
+/// Draws what is visible of each row, and stores its depth if it `STORES`.
+#[inline(always)]
+pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
+    cover: &mut Cover<'_, F, D>,
+    mut runs: impl DrawRun<F::Word>,
+) {
+    let Cover { setup, rows, window, origin, width, pixels, depth, .. } = cover;
+    let (setup, origin, width) = (*setup, *origin, *width);
+    rows.each(window, |y, start, end| {
+        let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
+        let count = (end - start) as usize;
+        // In two steps: the end of a range is checked more dearly.
+        let Some(pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+            return;
+        };
+        if !D::ALWAYS_PASSES {
+            let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+                return;
+            };
+            // One pixel needs no step, which takes a while in a sliver.
+            let z = match count {
+                1 if setup.sliver => (setup.value_in_sliver(&setup.z, start, y), 0),
+                _ => setup.at(&setup.z, start, y),
+            };
+            let passed = first_visible::<D, STORES>(depth, z);
+            if passed != Some(count) {
+                return draw_visible::<STORES, F::Word, D>(
+                    &mut runs.again(),
+                    [start, y],
+                    pixels,
+                    (depth, z),
+                    passed,
+                );
+            }
+        }
+        runs.draw_run(start, y, pixels);
+    });
+}
+
+/// Draws what is visible of a span, some pixels of which are hidden, run by run. Of its pixels `passed` were tested
+/// and are visible, and the next one is hidden; none was tested where it is `None`.
+#[inline(never)]
+fn draw_visible<const STORES: bool, W, D: DepthFormat>(
+    runs: &mut impl DrawRun<W>,
+    [mut x, y]: [i32; 2],
+    mut pixels: &mut [W],
+    (mut depth, (mut near_w, step)): (&mut [D::Word], (u32, i32)),
+    passed: Option<usize>,
+) {
+    let mut run = 0..passed.unwrap_or(0);
+    let mut tested = passed.map_or(0, |passed| passed + 1);
+    loop {
+        let (done, rest) = pixels.split_at_mut(tested.min(pixels.len()));
+        if let Some(visible) = done.get_mut(run.clone())
+            && !visible.is_empty()
+        {
+            runs.draw_run(x + run.start as i32, y, visible);
+        }
+        (pixels, depth) = (rest, depth.get_mut(tested..).unwrap_or_default());
+        if depth.is_empty() {
+            return;
+        }
+        x += tested as i32;
+        near_w = near_w.wrapping_add_signed(step.wrapping_mul(tested as i32));
+        (run, tested) = visible::<D, STORES>(depth, near_w, step);
+    }
+}
