@@ -4,7 +4,8 @@
 use crate::bench::{CAMERA, Flat, LIGHTS, WALL};
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel::material::Kind;
-use fixel::{Affine, DepthFormat, Exact, Quality, QuarterPixel, Surface, num::I12F4, prelude::*};
+use fixel::num::{I12F4, I16F16};
+use fixel::{Affine, DepthFormat, Exact, Fog, Mask, Quality, QuarterPixel, Surface, prelude::*};
 
 /// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
 /// Sides turned to where `cull` says are left out.
@@ -13,7 +14,7 @@ fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'stat
         material: Material<'static, impl Kind>,
         cull: Cull,
     ) -> Surface<'static, Rgb565, D> {
-        (&material.quality::<Q>().cull(cull)).into()
+        material.quality::<Q>().cull(cull).surface()
     }
     match number {
         0 => of::<D, Q>(Material::flat(Rgb565::CSS_TOMATO), cull),
@@ -24,6 +25,28 @@ fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'stat
         _ => of::<D, Q>(Material::gouraud().lit(), cull),
     }
 }
+
+/// A surface that is laid over what is there, or leaves pixels out, by its number: of one colour with alpha, added, multiplied,
+/// with its vertices' alpha; textured with alpha, × light with alpha, by a screen door, cut out by colour and by a mask.
+fn layered<D: DepthFormat>(number: u32) -> Surface<'static, Rgb565, D> {
+    let (flat, textured) = (Material::flat(Rgb565::CSS_TOMATO), Material::textured(&WALL));
+    match number {
+        0 => flat.alpha(96).surface(),
+        1 => flat.additive().surface(),
+        2 => flat.multiply().surface(),
+        3 => flat.vertex_alpha().surface(),
+        4 => textured.alpha(96).surface(),
+        5 => textured.lit().alpha(96).surface(),
+        6 => textured.alpha(96).screen_door().surface(),
+        // No texel has the colour, and all are in the mask: all are drawn.
+        7 => textured.cut_out(Rgb565::CSS_MAGENTA).surface(),
+        _ => textured.masked(&ALL).surface(),
+    }
+}
+
+static ALL: Mask = Mask::new(&[0xff], 3, 0);
+/// Most of it lies where the rectangles are.
+static FOG: Fog = Fog::linear(Rgb565::WHITE, I16F16::lit("0.25"), I16F16::lit("4"));
 
 /// Three corners with everything that a surface may ask for; x and y are pixels at focal length 80, before the distance w.
 /// Its texture is `texels` wide and high.
@@ -78,6 +101,24 @@ pub fn rectangle<D: DepthFormat>(surface: u32, quality: u32, shape: u32, frame: 
         1 => self::surface::<D, QuarterPixel>(surface, Cull::Back),
         _ => self::surface::<D, Exact>(surface, Cull::Back),
     };
+    let (camera, mesh) = view(shape);
+    camera.lit_by(&LIGHTS).draw(&mesh, &Pose::IDENTITY, surface, frame);
+}
+
+/// A [`rectangle`] with a [surface that is not opaque](layered), or, from number 16 on, with an opaque one in fog.
+#[inline(always)]
+pub fn layered_rectangle<D: DepthFormat>(number: u32, shape: u32, frame: &mut Band<'_, Rgb565, D>) {
+    let (camera, mesh) = view(shape);
+    if number < 16 {
+        camera.lit_by(&LIGHTS).draw(&mesh, &Pose::IDENTITY, layered::<D>(number), frame);
+    } else {
+        let surface = self::surface::<D, QuarterPixel>(number - 16, Cull::Back);
+        camera.lit_by(&LIGHTS).in_fog(&FOG).draw(&mesh, &Pose::IDENTITY, surface, frame);
+    }
+}
+
+/// What sees a rectangle, and the triangle that fills it.
+fn view(shape: u32) -> (Camera, Mesh<'static>) {
     let mesh = match shape >> 2 & 3 {
         0 => STRAIGHT,
         1 => FLOOR,
@@ -87,8 +128,7 @@ pub fn rectangle<D: DepthFormat>(surface: u32, quality: u32, shape: u32, frame: 
     let size = size(shape);
     let middle = I12F4::from_num(64 - size.width as i16 / 2 - left);
     let camera = Camera::focal(80.0, size).near(0.1).viewport(Point::new(16 + i32::from(left), 24));
-    let camera = camera.off_axis(middle, I12F4::ZERO);
-    camera.lit_by(&LIGHTS).draw(&mesh, &Pose::IDENTITY, surface, frame);
+    (camera.off_axis(middle, I12F4::ZERO), mesh)
 }
 
 /// A triangle of one pixel, and one of 6 rows with 21 pixels: neither is seen straight on.

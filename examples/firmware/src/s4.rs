@@ -30,9 +30,9 @@ struct Thing(&'static Mesh<'static>, Pose, fn() -> Surface<'static, Rgb565, Dept
 
 /// The torus is first: while a mesh goes into a list there has to be room for all its vertices, and half of them stay.
 static THINGS: [Thing; 3] = [
-    Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, || (&Material::textured(&WALL).lit()).into()),
-    Thing(&CUBE, CUBE_POSE, || (&Material::textured(&WALL)).into()),
-    Thing(&GROUND, GROUND_POSE, || (&Material::textured(&PAVING)).into()),
+    Thing(&TEXTURED_TORUS_MESH, TORUS_POSE, || Material::textured(&WALL).lit().surface()),
+    Thing(&CUBE, CUBE_POSE, || Material::textured(&WALL).surface()),
+    Thing(&GROUND, GROUND_POSE, || Material::textured(&PAVING).surface()),
 ];
 
 /// The wall's bricks as slabs of stone.

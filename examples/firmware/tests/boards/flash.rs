@@ -14,25 +14,29 @@ const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/flash.txt");
 
 const UPDATE: &str = "FIXEL_UPDATE_COUNTS=1 cargo test --test boards flash";
 
-const PROGRAMS: [&str; 4] = ["flat", "textured", "textured_lit", "all"];
+const PROGRAMS: [&str; 5] = ["flat", "textured", "textured_lit", "glass", "all"];
 
 const TARGETS: [&str; 2] = ["thumbv6m-none-eabi", "thumbv7em-none-eabihf"];
 
 /// With these a function's name has its type arguments. They change no code.
 const FLAGS: &str = "-C symbol-mangling-version=v0";
 
-/// All that is of one kind is in the functions whose names contain this.
-const LIGHT: &str = "fixel::scene::light::";
+/// All that is of one kind is in the functions whose names contain this. What light arrives, all lighting asks here.
+const LIGHT: &str = "fixel::scene::light::lights::Lighting>::arriving";
 const LIT_OR_GOURAUD: &str = "fixel::shade::colors::";
 const EXACT: &str = "fixel::shade::quality::Exact";
 const AFFINE: &str = "fixel::shade::quality::Affine";
 const CLAMPED: &str = "fixel::scene::texture::Texture>::fetch_clamp";
+const BLENDED: &str = "fixel::shade::layered::";
+const CUT_OUT: &str = "fixel::shade::kinds::CutOut";
+const FOG: &str = "fixel::shade::fog::lay_over";
 
 /// What a program must not link. `all` has each of them, which shows that they are still called so.
-const FORBIDDEN: [(&str, &[&str]); 3] = [
-    ("flat", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED]),
-    ("textured", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED]),
-    ("textured_lit", &[EXACT, AFFINE, CLAMPED]),
+const FORBIDDEN: [(&str, &[&str]); 4] = [
+    ("flat", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
+    ("textured", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
+    ("textured_lit", &[EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
+    ("glass", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, CUT_OUT, FOG]),
 ];
 
 /// What a program takes of a chip's flash, in bytes.

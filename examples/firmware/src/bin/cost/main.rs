@@ -34,6 +34,16 @@ mod functions {
         }
     }
 
+    /// Draws a rectangle that is not opaque, or in fog, without (0) or with (1) depth.
+    #[unsafe(no_mangle)]
+    extern "C" fn cost_layered(number: u32, depth: u32, shape: u32) {
+        if depth == 0 {
+            with_flat(|frame| cost::layered_rectangle(number, shape, frame));
+        } else {
+            with_deep(|frame| cost::layered_rectangle(number, shape, frame));
+        }
+    }
+
     /// Draws triangles of a kind.
     #[unsafe(no_mangle)]
     extern "C" fn cost_triangles(kind: u32, many: u32, surface: u32) {
