@@ -117,7 +117,7 @@
 //! # let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth)?;
 //! # let mut memory = ListMemory::<32, 16>::new();
 //! # let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, display.size().height);
-//! # let [tree, pane] = [0, 1].map(|z| Pose::IDENTITY.at(Vec3::new(0.into(), 0.into(), z.into())));
+//! # let (tree, pane) = (Pose::IDENTITY, Pose::IDENTITY.at(Vec3::lit(0.0, 0.0, 1.0)));
 //! let torch = [Light::point(Vec3::lit(0.5, 0.5, 1.0), [255, 200, 120], I16F16::lit("4"))]; // made in the frame
 //! let lights = Lights::new([40; 3], &torch);
 //! let fog = Fog::linear(Rgb565::WHITE, I16F16::lit("2"), I16F16::lit("9")).towards(&sky);

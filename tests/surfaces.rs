@@ -381,6 +381,190 @@ fn sending_only_what_changed_shows_all_surfaces() {
     });
 }
 
+#[test]
+fn shortcuts_give_the_bytes_of_the_general_way_and_in_fog_to_a_step() {
+    let screen = Size::new(64, 48);
+    let fog = Fog::exponential(Rgb565::WHITE, I16F16::lit("0.2"));
+    let gold = Material::flat(Rgb565::CSS_GOLD);
+    // On the left the shortcut: drawn in place, or blended run by run. On the right the same in blocks, because vertices might say
+    // how opaque they are (all are), or because depth is to be written as it is.
+    type Pair = [Surface<'static, Rgb565, Depth16>; 2];
+    let pairs: [Pair; 4] = [
+        [gold.alpha(96).surface(), gold.vertex_alpha().alpha(96).surface()],
+        [gold.additive().alpha(200).surface(), gold.additive().vertex_alpha().alpha(200).surface()],
+        [gold.multiply().surface(), gold.multiply().vertex_alpha().surface()],
+        [gold.surface(), gold.depth(true, true).surface()],
+    ];
+    let ball = fixel::shapes::icosphere::<42, 80>(0.8, 2);
+    let opaque: Vec<_> = ball.mesh().vertices().iter().map(|vertex| vertex.alpha(255)).collect();
+    let triangles: Vec<_> = ball.mesh().triangles().collect();
+    let mesh = Mesh::try_new(&opaque, &triangles).expect("a ball");
+    let stone = Material::gouraud().surface();
+    for_all(
+        "shortcuts",
+        400,
+        (draw(), draw(), 0..4_usize, any::<bool>()),
+        |(behind, before, pair, foggy)| {
+            let pictures = pairs[pair].map(|surface| {
+                let pixels: Vec<u16> = (0..64 * 48_u16).map(|i| i.wrapping_mul(40_503)).collect();
+                let (mut pixels, mut depth) = (pixels, vec![0; 64 * 48]);
+                let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("a band");
+                let camera = behind.camera(screen);
+                camera.draw(&meshes()[behind.mesh], &behind.pose, stone, &mut band);
+                if foggy {
+                    camera.in_fog(&fog).draw(&mesh, &before.pose, surface, &mut band);
+                } else {
+                    camera.draw(&mesh, &before.pose, surface, &mut band);
+                }
+                (pixels, depth)
+            });
+            let [left, right] = &pictures;
+            prop_assert!(left.1 == right.1, "depths of pair {}", pair);
+            if foggy {
+                // Fog is interpolated from where a run begins, and a block is another run: each is within its step.
+                let channels = |word: u16| [word >> 11, word >> 5 & 63, word & 31];
+                let off =
+                    |(&a, &b): (&u16, &u16)| (0..3).map(move |i| channels(a)[i].abs_diff(channels(b)[i]));
+                prop_assert!(left.0.iter().zip(&right.0).flat_map(off).all(|off| off <= 1), "pair {}", pair);
+            } else {
+                prop_assert!(left.0 == right.0, "pair {}", pair);
+            }
+            Ok(())
+        },
+    );
+}
+
+#[test]
+fn one_list_holds_all_that_a_game_has() {
+    static MEMORY: static_cell::ConstStaticCell<ListMemory<900, 500>> =
+        static_cell::ConstStaticCell::new(ListMemory::new());
+    let memory = MEMORY.take();
+    let screen = Size::new(64, 48);
+    let texture = Texture::new(&TEXELS, 4, 4);
+    let (sky, mask) = (Gradient::new(Rgb888::CSS_NAVY, Rgb888::CSS_PEACH_PUFF, 48), Mask::new(&MASK, 4, 4));
+    let camera = fixel::Camera::focal(40.0, screen).near(0.25).at(Vec3::lit(0.0, 0.0, 3.0));
+    let [ball, ground] = [meshes()[2], meshes()[3]];
+    let at =
+        |x: f32, z: f32| Pose::IDENTITY.at(Vec3::new(I16F16::from_num(x), I16F16::ZERO, I16F16::from_num(z)));
+    let mut pictures = Vec::new();
+    for frame in 0..3_u8 {
+        // Made in the frame: lights, fog, materials.
+        let torch = [fixel::Light::point(Vec3::lit(0.0, 1.0, 2.0), [255, 90 * frame, 60], I16F16::lit("9"))];
+        let lights = fixel::Lights::new([30; 3], &torch);
+        let fog = Fog::linear(Rgb565::WHITE, I16F16::lit("2"), I16F16::lit("9")).towards(&sky);
+        let view = camera.lit_by(&lights).in_fog(&fog);
+        let red = Material::flat(Rgb565::RED);
+        let bricks = Material::textured(&texture);
+        let glass = Material::flat(Rgb565::CSS_SKY_BLUE).alpha(96);
+        let tree = bricks.masked(&mask).lit().two_sided();
+        fn scene<'a, C: Canvas<'a, Format = Rgb565, Depth = Depth16>>(
+            canvas: &mut C,
+            draws: &[(&fixel::Mesh<'a>, Pose, Surface<'a, Rgb565, Depth16>)],
+            view: &fixel::View<'_, Fog<'a>>,
+        ) where
+            C::Output: std::fmt::Debug,
+        {
+            for (mesh, pose, surface) in draws {
+                let _ = view.draw(mesh, pose, surface, canvas);
+            }
+        }
+        let opaque = [
+            (&ground, at(0.0, 0.0), bricks.lit().exact().surface()),
+            (&ball, at(-1.0, -1.0), red.surface()),
+            (&ball, at(1.0, -1.0), bricks.lit().surface()),
+            (&ball, at(0.0, -2.0), tree.surface()),
+            (&ball, at(0.5, 0.5), Surface::new(&Dots)),
+        ];
+        let panes = [(&ball, at(0.0, 0.0), glass.surface()), (&ball, at(0.0, 1.0), glass.surface())];
+        let mut list = DisplayList::<Rgb565, Depth16, 8>::new(memory);
+        scene(&mut list, &panes[1..], &view);
+        scene(&mut list, &opaque, &view);
+        scene(&mut list, &panes[..1], &view);
+        assert_eq!(list.lengths()[2], 7);
+        let (mut pixels, mut depth) = (vec![0; 64 * 16], vec![0; 64 * 16]);
+        let mut band =
+            Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth).expect("a band");
+        let mut listed = Vec::new();
+        let Ok(()) = list.render_bands(48, &sky, &mut band, |_, band| {
+            listed.extend_from_slice(band.pixels());
+            Ok::<_, Infallible>(())
+        });
+        // At once, in the list's order: a convex pane's triangles that face the eye do not overlap.
+        let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
+        let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("a band");
+        band.clear_to(&sky);
+        scene(&mut band, &opaque, &view);
+        scene(&mut band, &panes, &view);
+        assert!(listed == pixels, "frame {frame}");
+        pictures.push(listed);
+    }
+    pictures.dedup();
+    assert_eq!(pictures.len(), 3, "the torch changes");
+}
+
+#[test]
+fn whatever_is_called_in_between_a_list_keeps_its_order() {
+    let world = World::<Rgb565, Depth16>::new();
+    let screen = Size::new(60, 48);
+    // Sorted, rendered or cleared between draws.
+    let events = prop::collection::vec((layered(2), 0..6_u8), 1..8);
+    for_all("sequences of draws", 200, events, |events| {
+        let (mut memory, mut other) = (Box::new(Memory::new()), Box::new(Memory::new()));
+        let mut list = List::new(&mut *memory);
+        let mut since = Vec::new();
+        for (draws, event) in &events {
+            match event {
+                0 => list.sort_back_to_front(),
+                1 => {
+                    list.clear();
+                    since.clear();
+                }
+                2 => {
+                    list.sort_back_to_front();
+                    rendered(&list, screen, 48, &world.sky);
+                }
+                _ => {}
+            }
+            for layered in draws {
+                world.draw(layered, screen, &mut list).expect("the list is large");
+                since.push(*layered);
+            }
+        }
+        // The same without what was in between.
+        let mut plain = List::new(&mut *other);
+        for layered in &since {
+            world.draw(layered, screen, &mut plain).expect("the list is large");
+        }
+        prop_assert!(rendered(&list, screen, 16, &world.sky) == rendered(&plain, screen, 48, &world.sky));
+        Ok(())
+    });
+}
+
+#[test]
+fn the_largest_list_takes_opaque_triangles_after_transparent_ones() {
+    let corner = |x, y| Vertex::new(x, y, 0.0);
+    let corners = [corner(-0.5, 0.5), corner(-0.5, -0.5), corner(0.5, -0.5)];
+    let many = vec![[0, 1, 2]; 32_768];
+    let (large, small) = (Mesh::try_new(&corners, &many), Mesh::try_new(&corners, &many[..1]));
+    let [large, small] = [large, small].map(|mesh| mesh.expect("triangles"));
+    let screen = Size::new(8, 8);
+    let camera = fixel::Camera::focal(8.0, screen).near(0.5).at(Vec3::lit(0.0, 0.0, 2.0));
+    let mut memory = Box::new(ListMemory::<16, 40_000>::new());
+    let mut list = DisplayList::<Rgb565, Depth16, 8>::new(&mut *memory);
+    let red = Material::flat(Rgb565::RED);
+    camera.draw(&large, &Pose::IDENTITY, &red, &mut list).expect("there is room");
+    camera.draw(&small, &Pose::IDENTITY, &red.alpha(128), &mut list).expect("there is room");
+    for _ in 0..2 {
+        let nearer = Pose::IDENTITY.at(Vec3::lit(0.0, 0.0, 0.5));
+        camera.draw(&small, &nearer, &Material::flat(Rgb565::BLUE), &mut list).expect("there is room");
+    }
+    let (mut pixels, mut depth) = (vec![0; 64], vec![0; 64]);
+    let mut band = Band::<Rgb565, Depth16>::new(screen, &mut pixels, &mut depth).expect("a band");
+    list.render(0, &mut band);
+    assert_eq!(list.lengths()[1], 32_771);
+    assert!(pixels.contains(&Rgb565::BLUE.into_storage()));
+}
+
 /// Draws what fits, and goes on without what does not.
 fn driven<const V: usize, const T: usize, const N: usize>(
     world: &World<Rgb565, Depth16>,

@@ -10,7 +10,8 @@ use crate::shade::Surface;
 
 /// What [`Camera::draw`](crate::Camera::draw) draws to: a [`Band`], at once, or a [`DisplayList`](super::DisplayList), for later.
 ///
-/// A list keeps the mesh's vertices, the material's texture and shaders borrowed, for `'a`; a band does not.
+/// A list keeps the mesh's vertices, a material's texture and mask, a fog's gradient or table, and shaders borrowed, for `'a`; a band
+/// does not.
 pub trait Canvas<'a>: sealed::Sealed {
     /// How its pixels are stored.
     type Format: PixelFormat;

@@ -9,7 +9,7 @@ use crate::geometry::{Cull, RangeError, ScreenVertex};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4, I16F16, U1F31};
 use crate::scene::{Camera, Projection, Texture};
-use crate::shade::{Material, Shader};
+use crate::shade::{Material, Reach, Shader};
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics::Drawable;
@@ -274,7 +274,22 @@ impl<F: PixelFormat, const RUN: usize> Drawable for PerspectiveImage<'_, F, RUN>
 /// One triangle on the screen with any [`Shader`], as an embedded-graphics [`Drawable`]: textured, shaded, or the caller's own.
 ///
 /// It goes straight to any [`DrawTarget`], as [`PerspectiveImage`] does and with the same promises. As nothing is kept, it has no
-/// depth; triangles that share an edge share no pixel.
+/// depth; triangles that share an edge share no pixel. Nothing can be read back either: it takes opaque materials, and a shader
+/// whose [`REACH`](Shader::REACH) is attributes. Any other does not compile:
+///
+/// ```compile_fail,E0080
+/// # use embedded_graphics::{mock_display::MockDisplay, pixelcolor::Rgb565, prelude::*};
+/// # use fixel::{Cull, Inputs, QuarterPixel, Reach, ScreenVertex, ShadedTriangle, Shader, Varying};
+/// struct Holes;
+/// impl Shader<Rgb565> for Holes {
+///     type Quality = QuarterPixel;
+///     const REACH: Reach = Reach::Place;
+/// #   fn inputs(&self) -> Inputs { Inputs::None }
+/// #   fn color(&self, _: &Varying) -> u16 { 0 }
+/// }
+/// # let mut display = MockDisplay::<Rgb565>::new();
+/// ShadedTriangle::new(&[ScreenVertex::default(); 3], Cull::None, &Holes).unwrap().draw(&mut display).unwrap();
+/// ```
 ///
 /// ```
 /// use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
@@ -343,6 +358,12 @@ impl<F: PixelFormat, S: Shader<F>, const RUN: usize> Drawable for ShadedTriangle
     type Output = ();
 
     fn draw<D: DrawTarget<Color = F::Color>>(&self, target: &mut D) -> Result<(), D::Error> {
+        const {
+            assert!(
+                matches!(S::REACH, Reach::Attributes),
+                "a shader that sees more than attributes needs a band"
+            )
+        };
         let mut direct = Direct::<F, D, RUN>::new(target, None);
         direct.draw(self.vertices.each_ref(), self.cull, false, self.shader)
     }

@@ -1,4 +1,8 @@
 //! A view, for canvases of one format.
+//!
+//! - In: a camera, lights and fog.
+//! - Out: the same, with what fog does in this format.
+//! - Assumes: nothing.
 
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::scene::{Camera, Lights};

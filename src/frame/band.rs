@@ -88,11 +88,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         Size::new(self.width as u32, self.height as u32)
     }
 
-    /// It is an embedded-graphics [`DrawTarget`](embedded_graphics::draw_target::DrawTarget) in the coordinates of the whole screen:
-    /// what lies outside its rows is not drawn. At first it contains what the memory did. Begin each picture with
-    /// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a
-    /// part, of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by
-    /// DMA while another is drawn, see [`Band::swap_pixels`].
+    /// Forgets all depths: what is drawn next is in front. Colours stay.
     pub fn clear_depth(&mut self) {
         D::clear(self.depth);
     }
@@ -103,13 +99,13 @@ impl<'a, F: PixelFormat, D: DepthFormat> Band<'a, F, D> {
         self.pixels.get(..self.len()).unwrap_or_default()
     }
 
-    /// The same to be changed.
+    /// The pixels' words, row after row, to be changed.
     pub fn pixels_mut(&mut self) -> &mut [F::Word] {
         let length = self.len();
         self.pixels.get_mut(..length).unwrap_or_default()
     }
 
-    /// [`Band::depth`] to be changed.
+    /// The depths, as [`Band::depth`] has them, to be changed.
     pub fn depth_mut(&mut self) -> &mut [D::Word] {
         let length = self.len().min(self.depth.len());
         self.depth.get_mut(..length).unwrap_or_default()

@@ -14,6 +14,9 @@ use embedded_graphics::pixelcolor::Rgb565;
 ///
 /// In the formulas t is a channel of what is there, s of what is drawn, m the greatest value of the channel, and a the
 /// opacity, 0 … 255.
+///
+/// A format of your own has to keep to this, too: over with 255 is the source, adding black and multiplying with white change
+/// nothing.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot blend pixels",
     label = "transparent materials and fog need a format that is `BlendFormat`",

@@ -10,7 +10,8 @@ pub struct Vertex {
     pub position: [I4F12; 3],
     /// Texture coordinates in texels, (0, 0) the texture's first texel's outer corner.
     pub uv: [I12F4; 2],
-    /// Red, green, blue, for [`Material::gouraud`](crate::Material::gouraud).
+    /// Red, green, blue, for [`Material::gouraud`](crate::Material::gouraud); red is alpha for
+    /// [`Material::vertex_alpha`](crate::Material::vertex_alpha).
     pub color: [u8; 3],
     /// The direction that lights see, of length 1.0 = 127 in mesh space.
     pub normal: [i8; 3],

@@ -43,7 +43,7 @@ pub struct Over;
 #[derive(Clone, Copy, Debug)]
 pub struct Additive;
 
-/// As through a coloured glass: t·s / m.
+/// As through a coloured glass: t·s′ / m, with s′ = (s·a + m·(255 − a)) / 255.
 #[derive(Clone, Copy, Debug)]
 pub struct Multiply;
 
@@ -148,6 +148,13 @@ layers! {
     Multiply: BlendFormat Codes::MULTIPLY;
 }
 
+/// The colour of a glass that is less than whole: mixed with white.
+#[inline(always)]
+fn thinned<F: BlendFormat>(word: F::Word, alpha: u8) -> F::Word {
+    if alpha == 255 { word } else { F::over(F::rgb565(0xffff), word, alpha) }
+}
+
+// `black_box` keeps loops from being unrolled: that takes 1 KiB, and gains nothing.
 macro_rules! loops {
     ($($each:ident $evenly:ident $blend:expr;)*) => {$(
         fn $each<F: BlendFormat>(pixels: &mut [F::Word], words: &[F::Word], opacity: &[u8]) {
@@ -173,5 +180,5 @@ macro_rules! loops {
 loops! {
     over over_evenly F::over;
     add add_evenly F::add;
-    multiply multiply_evenly |pixel, word, _| F::multiply(pixel, word);
+    multiply multiply_evenly |pixel, word, alpha| F::multiply(pixel, thinned::<F>(word, alpha));
 }

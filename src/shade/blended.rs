@@ -2,7 +2,8 @@
 //!
 //! - In: a cover whose layers blend.
 //! - Out: words, and depths if they are written, where the triangle is in front.
-//! - Assumes: nothing; where opacity varies, or depth is not used as usual, the [general way](super::layered) is taken.
+//! - Assumes: nothing. It is for an alpha that is the same everywhere, with the usual test and no depth written; all else goes the
+//!   [general way](super::layered).
 
 use super::cover::{BlendEvenly, Cover, InFog};
 use super::fill::Fill;
@@ -37,7 +38,7 @@ impl<'f, F: PixelFormat, D: DepthFormat> DrawRun<F::Word> for Blended<'_, 'f, F,
             };
             self.line.draw(x, y, words, self.fill);
             if let Some(fog) = self.fog {
-                fog.fogging.lay_over(y, self.setup.at(&self.setup.z, x, y), self.fades_to, words);
+                fog.fogging.lay_over([x, y], self.setup.at(&self.setup.z, x, y), self.fades_to, words);
             }
             (self.blend)(pixels, words, self.alpha);
         }

@@ -1,10 +1,10 @@
-//! What a triangle is drawn with: its set-up, the memory of a band, and what is done with colours once they are made.
+//! A cover: a triangle's set-up, the memory of a band, and what is done with colours once they are made.
 //!
 //! - In: a triangle that is set up, its rows, and the memory of a band.
 //! - Out: these, for the loops that draw it.
 //! - Assumes: the rows lie in the band.
 //!
-//! Nothing but an opaque surface has [layers](Layers). The functions in them are named where a material is made
+//! An opaque surface has no functions in its [layers](Layers). Those of others are named where a material is made
 //! transparent, or a view foggy. So only programs that do that link them.
 
 use super::fill::Fill;
@@ -40,6 +40,13 @@ pub(crate) struct InFog<'a, F: PixelFormat, D: DepthFormat> {
     pub(super) fogging: Fogging<'a, F>,
     /// Draws a triangle of an opaque surface.
     pub(super) draw_opaque: DrawFill<F, D>,
+}
+
+impl<F: PixelFormat, D: DepthFormat> InFog<'_, F, D> {
+    /// Whether they do the same.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.fogging.is_like(&other.fogging)
+    }
 }
 
 /// The functions that lay colours over what is there.
@@ -97,6 +104,19 @@ impl<F: PixelFormat, D: DepthFormat> LayerCode<F, D> {
         is_screen_door: false,
         reads_target: false,
     };
+    /// Whether they do the same.
+    fn is_like(&self, other: &Self) -> bool {
+        let same_blend = match (self.blend, other.blend) {
+            (Some(blend), Some(other)) => core::ptr::fn_addr_eq(blend, other),
+            (None, None) => true,
+            _ => false,
+        };
+        same_blend
+            && self.draw.is_some() == other.draw.is_some()
+            && self.is_screen_door == other.is_screen_door
+            && self.reads_target == other.reads_target
+    }
+
     /// Of a shader that shows what is behind it.
     pub(crate) const READS_TARGET: Self = Self { reads_target: true, ..Self::OPAQUE };
 }
@@ -113,10 +133,12 @@ impl<F: PixelFormat, D: DepthFormat> Layers<F, D> {
 
     /// Whether they do the same.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
-        core::ptr::eq(self.code, other.code)
-            && self.opacity.is_none()
-            && other.opacity.is_none()
-            && self.layering == other.layering
+        let same_opacity = match (self.opacity, other.opacity) {
+            (Some(opacity), Some(other)) => core::ptr::fn_addr_eq(opacity, other),
+            (None, None) => true,
+            _ => false,
+        };
+        same_opacity && self.code.is_like(other.code) && self.layering == other.layering
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - In: near/w along a run of pixels, and their words.
 //! - Out: the words in fog.
-//! - Assumes: near/w is 2⁻²⁰ or more.
+//! - Assumes: near/w is 2⁻²⁰ or more, to which set-up limits it.
 //!
 //! How much fog a pixel has is a function of w, the view depth, which is not linear on the screen. Three formulas use w in a unit
 //! of their own: let d be w·S.
@@ -15,7 +15,7 @@
 //!
 //! d is made of near/w by a reciprocal of 16 bits and one product: no division, and none of 64 bits. Fog is 8 bits, 0 … 255, and
 //! is laid over a word as [`BlendFormat::over`] does. Where fog changes by at most 2 of 255 over 8 pixels, and in one piece of its
-//! function, it is linear between: as it only rises or falls there, that is off by at most 2.
+//! function, it is interpolated between the two: as it only rises or falls there, that is off by at most 2.
 
 use super::inverses::exact_inverse;
 use crate::frame::{BlendFormat, Gradient, PixelFormat};
@@ -24,13 +24,19 @@ use crate::scene::Camera;
 use embedded_graphics::pixelcolor::{Rgb565, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
-/// Fog of a [view](crate::View): how thick it is at which view depth, and its colour. View depth is the distance along the line of
-/// sight, so fog does not change where a camera turns on the spot… but for what comes to the picture's edge.
+/// Fog of a [view](crate::View): how thick it is at which view depth, and its colour. View depth is measured
+/// along the camera's axis, not from the eye to the point: what moves from the middle to the edge as a camera turns has less fog.
 ///
-/// What a pixel shows is off by less than one step of the target's channel. It takes a value, and borrows only a table or a gradient.
+/// What a pixel shows is off by less than one step of the target's channel, where near/w is 1/100 or more and in the middle of what 31 bits
+/// of it hold: a view depth of a thousand near planes is fine. Materials that are [added](crate::Material::additive) fade to black,
+/// those that [multiply](crate::Material::multiply) to white, all others to the fog's colour. A shader that reads the target
+/// gets what is there with its fog, and fog is laid over what it returns.
+///
+/// A view and a list copy the fog; only a table or a gradient stays borrowed. Backgrounds get none, nor does what is drawn without a
+/// view.
 ///
 /// ```
-/// use fixel::embedded_graphics::pixelcolor::{Rgb565, Rgb888, prelude::*};
+/// use fixel::embedded_graphics::{pixelcolor::{Rgb565, Rgb888}, prelude::*};
 /// use fixel::{Fog, Gradient, num::I16F16};
 /// let sky = Gradient::new(Rgb888::CSS_MIDNIGHT_BLUE, Rgb888::CSS_LIGHT_PINK, 240); // the background, too
 /// let haze = Fog::exponential(Rgb565::CSS_GRAY, I16F16::lit("0.1")).towards(&sky);
@@ -59,8 +65,8 @@ impl<'a> Fog<'a> {
 
     /// None up to a view depth of `start`, all fog from `end` on, and linear between.
     ///
-    /// `start` is limited to 0 or more, and `end` to at least 1/32 more than that, and 1/256: nearer to each other they would
-    /// ask for more digits than 1/w has.
+    /// `start` is limited to 0 … 30719.99. `end` is at least 33/32 of `start`, and at least 1/256 more than it: nearer to each
+    /// other they would ask for more digits than 1/w has.
     #[must_use]
     pub const fn linear(color: Rgb565, start: I16F16, end: I16F16) -> Self {
         let start = limited(start.to_bits(), 0, i32::MAX - (1 << 27));
@@ -68,7 +74,8 @@ impl<'a> Fog<'a> {
         Self::new(color, Amount::Linear { start, end: limited(end.to_bits(), start + least, i32::MAX) })
     }
 
-    /// 1 − e^(−`density`·w) of it at a view depth of w; the density, 1/65536 … 64, is per unit of the world.
+    /// 1 − e^(−`density`·w) of it at a view depth of w; the density, limited to 1/65536 … 64, is per unit of the
+    /// world.
     #[must_use]
     pub const fn exponential(color: Rgb565, density: I16F16) -> Self {
         Self::new(color, Amount::Exponential { density: limited(density.to_bits(), 1, 64 << 16) })
@@ -83,11 +90,31 @@ impl<'a> Fog<'a> {
         Self::new(color, Amount::Table { far: limited(far.to_bits(), 1 << 8, i32::MAX), table })
     }
 
-    /// The same with the colours of a gradient, row by row, in place of one colour: what is far away vanishes in the
-    /// background that the gradient is.
+    /// The same with the colours of a gradient in place of one colour, by the rows of the screen: what is far away vanishes in
+    /// the background that the gradient is.
     #[must_use]
     pub const fn towards(self, gradient: &'a Gradient) -> Self {
         Self { gradient: Some(gradient), ..self }
+    }
+}
+
+/// The same numbers, and the same gradient and table in memory: their values are not compared.
+impl PartialEq for Fog<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        let same_gradient = match (self.gradient, other.gradient) {
+            (Some(gradient), Some(other)) => core::ptr::eq(gradient, other),
+            (None, None) => true,
+            _ => false,
+        };
+        let same_amount = match (self.amount, other.amount) {
+            (Amount::Linear { start, end }, Amount::Linear { start: s, end: e }) => [start, end] == [s, e],
+            (Amount::Exponential { density }, Amount::Exponential { density: other }) => density == other,
+            (Amount::Table { far, table }, Amount::Table { far: other_far, table: other }) => {
+                far == other_far && core::ptr::eq(table, other)
+            }
+            _ => false,
+        };
+        same_gradient && same_amount && self.color == other.color
     }
 }
 
@@ -101,8 +128,8 @@ const fn limited(value: i32, least: i32, most: i32) -> i32 {
     }
 }
 
-/// A function that lays fog over the words of row y, from a pixel with this near/w and its step on.
-type LayOver<F> = fn(&Fogging<'_, F>, i32, (u32, i32), Option<u16>, &mut [<F as PixelFormat>::Word]);
+/// A function that lays fog over words, from a pixel with this near/w and its step on.
+type LayOver<F> = fn(&Fogging<'_, F>, [i32; 2], (u32, i32), Option<u16>, &mut [<F as PixelFormat>::Word]);
 
 /// Fog before a camera.
 pub(crate) struct Fogging<'a, F: PixelFormat> {
@@ -122,6 +149,11 @@ impl<F: PixelFormat> Clone for Fogging<'_, F> {
 impl<F: PixelFormat> Copy for Fogging<'_, F> {}
 
 impl<'a, F: PixelFormat> Fogging<'a, F> {
+    /// Whether they are the same fog before like cameras.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.fog == other.fog && self.depth == other.depth
+    }
+
     pub(crate) fn new(fog: Fog<'a>, camera: &Camera) -> Self
     where
         F: BlendFormat,
@@ -129,7 +161,7 @@ impl<'a, F: PixelFormat> Fogging<'a, F> {
         // S as a quotient of two numbers of I16F16 or less.
         let (numerator, denominator): (u64, u64) = match fog.amount {
             Amount::Linear { start, end } => (1 << 16, (end - start) as u64),
-            // 1/ln 2 is 1477/1024, but for 0.0003.
+            // 1/ln 2 is 1477/1024, less 0.0003.
             Amount::Exponential { density } => (density as u64 * 1477, 1 << (16 + 10)),
             Amount::Table { far, table } => ((table.len().saturating_sub(1) as u64) << 16, far as u64),
         };
@@ -141,10 +173,16 @@ impl<'a, F: PixelFormat> Fogging<'a, F> {
         Self { fog, depth, offset, lay_over: lay_over::<F> }
     }
 
-    /// Lays fog over the words of row `y`, from the pixel with this near/w on (31 fraction bits, with its step). `fades_to` is an
+    /// Lays fog over words from the pixel (x, y) on, which has this near/w (31 fraction bits, with its step). `fades_to` is an
     /// RGB565 number in place of the fog's colour.
-    pub(crate) fn lay_over(&self, y: i32, near_w: (u32, i32), fades_to: Option<u16>, words: &mut [F::Word]) {
-        (self.lay_over)(self, y, near_w, fades_to, words);
+    pub(crate) fn lay_over(
+        &self,
+        place: [i32; 2],
+        near_w: (u32, i32),
+        fades_to: Option<u16>,
+        words: &mut [F::Word],
+    ) {
+        (self.lay_over)(self, place, near_w, fades_to, words);
     }
 
     fn color_of_row(&self, y: i32) -> F::Word {
@@ -168,7 +206,7 @@ impl<'a, F: PixelFormat> Fogging<'a, F> {
 }
 
 /// View depth in a unit of its own, from near/w.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum ViewDepth {
     /// `factor` · 2^`exponent` · 1/q.
     Perspective { factor: u32, exponent: i32 },
@@ -262,9 +300,11 @@ fn from_table(table: &[u8], d: u32) -> u32 {
 /// The steps between two pixels whose fog is computed, if it changes little.
 const STEPS: usize = 8;
 
+/// Columns come in groups of [`STEPS`] on the screen, wherever a run begins: what fog a pixel has does not depend on what hides its
+/// neighbours.
 fn lay_over<F: BlendFormat>(
     fogging: &Fogging<'_, F>,
-    y: i32,
+    [x, y]: [i32; 2],
     (mut near_w, step): (u32, i32),
     fades_to: Option<u16>,
     mut words: &mut [F::Word],
@@ -273,41 +313,42 @@ fn lay_over<F: BlendFormat>(
         Some(number) => F::rgb565(number),
         None => fogging.color_of_row(y),
     };
-    let (mut fog, mut piece) = fogging.at(near_w);
+    // near/w so many pixels on, if it is still one.
+    let ahead = |near_w: u32, pixels: i32| {
+        let there = near_w.checked_add_signed(step.checked_mul(pixels)?)?;
+        (there <= i32::MAX as u32).then_some(there)
+    };
+    // The group's first pixel, which may lie before the run.
+    let mut into = x & (STEPS as i32 - 1);
+    let mut fog = ahead(near_w, -into).map(|there| fogging.at(there));
     while !words.is_empty() {
-        let count = words.len().min(STEPS);
-        // To the first pixel that follows, or to the last one.
-        let steps = if words.len() > STEPS { STEPS } else { count - 1 };
-        let next = near_w.wrapping_add_signed(step.wrapping_mul(steps as i32));
-        let (next_fog, next_piece) = if step == 0 { (fog, piece) } else { fogging.at(next) };
-        let change = next_fog as i32 - fog as i32;
+        let count = words.len().min(STEPS - into as usize);
+        let next = ahead(near_w, STEPS as i32 - into);
+        let next_fog = if step == 0 { fog } else { next.map(|there| fogging.at(there)) };
         let (block, rest) = words.split_at_mut(count);
-        if change.unsigned_abs() <= 2 && piece == next_piece {
-            // With 16 fraction bits; rounded.
-            let (mut at, slope) = (((fog as i32) << 16) + (1 << 15), change * INVERSES[steps & 15]);
-            if fog | next_fog != 0 {
-                for word in block {
-                    *word = F::over(*word, color, (at >> 16) as u8);
-                    at += slope;
+        match (fog, next_fog) {
+            (Some((first, piece)), Some((last, last_piece)))
+                if piece == last_piece && first.abs_diff(last) <= 2 =>
+            {
+                if first | last != 0 {
+                    // With 16 fraction bits; rounded.
+                    let slope = (last as i32 - first as i32) << (16 - 3);
+                    let mut at = ((first as i32) << 16) + (1 << 15) + slope * into;
+                    for word in block {
+                        *word = F::over(*word, color, (at >> 16) as u8);
+                        at += slope;
+                    }
                 }
             }
-        } else {
-            for word in block {
-                *word = F::over(*word, color, fogging.at(near_w).0 as u8);
-                near_w = near_w.wrapping_add_signed(step);
+            _ => {
+                let mut at = near_w;
+                for word in block {
+                    *word = F::over(*word, color, fogging.at(at).0 as u8);
+                    at = at.wrapping_add_signed(step);
+                }
             }
         }
-        (near_w, fog, piece, words) = (next, next_fog, next_piece, rest);
+        near_w = near_w.wrapping_add_signed(step.wrapping_mul(count as i32));
+        (fog, words, into) = (next_fog, rest, 0);
     }
 }
-
-/// 1/n with 16 fraction bits, rounded down; up to 8.
-static INVERSES: [i32; 16] = {
-    let mut inverses = [0; 16];
-    let mut n = 1;
-    while n <= STEPS {
-        inverses[n] = (1 << 16) / n as i32;
-        n += 1;
-    }
-    inverses
-};

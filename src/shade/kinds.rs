@@ -71,7 +71,7 @@ pub trait TexelKind: Kind {
 /// A [`Kind`] that does not need the vertices' colours, so that they can say [how opaque](crate::Material::vertex_alpha) it is.
 pub trait ColorlessKind: Kind {}
 
-/// How opaque the pixels of a triangle are from (x, y) on.
+/// A function that writes how opaque the pixels of a triangle are from (x, y) on.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct Opacity(pub(super) cover::Opacity);
@@ -318,7 +318,7 @@ impl<K: TexelKind> CutOut<K> {
     }
 }
 
-/// In one form of perspective for color and mask, so that a texel is never drawn where the next one is left out.
+/// Texel and mask are found at the same coordinates, so that a hole never shows its neighbour.
 impl<K: TexelKind> Kind for CutOut<K> {
     const INPUTS: Inputs = K::INPUTS;
     const HAS_SMALL: bool = false;
@@ -364,13 +364,19 @@ impl<K: ColorlessKind> Kind for VertexAlpha<K> {
 }
 
 fn opacity<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
-    let fill = Each::<1, Q, u8, _>::new(|[alpha]: [i32; 1]| (alpha >> 16) as u8);
+    let fill = Each::<1, Q, u8, _>::new(|[alpha]: [i32; 1]| level(alpha));
     Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
 }
 
 fn opacity_after_uv<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
-    let fill = Each::<3, Q, u8, _>::new(|[_, _, alpha]: [i32; 3]| (alpha >> 16) as u8);
+    let fill = Each::<3, Q, u8, _>::new(|[_, _, alpha]: [i32; 3]| level(alpha));
     Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
+}
+
+/// The nearest level of I16F16: corners that clipping makes of 255 may be a little less.
+#[inline]
+fn level(alpha: i32) -> u8 {
+    ((alpha + (1 << 15)) >> 16).min(255) as u8
 }
 
 /// Channels of I16F16, 0 … 255.996, without their fractions.

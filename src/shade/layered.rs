@@ -4,15 +4,15 @@
 //! - Out: words, and depths if they are written, where something of the surface is seen.
 //! - Assumes: nothing.
 //!
-//! A span is cut into blocks of at most [`BLOCK`] pixels. Each block goes through the same steps. How opaque a pixel is, 0 …
-//! 255, comes out of the first four; 0 is left out:
+//! A span is cut into blocks of at most [`BLOCK`] pixels. Each block goes through the same steps, with a byte for each pixel that
+//! says how opaque it is, 0 … 255:
 //!
-//! 1. depth: 0 where the surface is hidden;
-//! 2. colours: 0 where the surface leaves a pixel out;
-//! 3. vertices: what they say of it, times the whole surface's alpha;
+//! 1. depth: alpha where the surface is visible, else 0;
+//! 2. colours are made; a pixel that the surface leaves out gets 0;
+//! 3. vertices: times their alpha;
 //! 4. screen door: 0 or 255, by a pattern that stays on the screen;
-//! 5. fog, on the colours;
-//! 6. blending, and depth.
+//! 5. fog is laid over the colours;
+//! 6. colours are blended, and depths written, where it is not 0.
 
 use super::cover::{Cover, Layers};
 use super::fill::Fill;
@@ -56,12 +56,12 @@ impl<W> Colors<W> for Filled<'_, W> {
 }
 
 /// A fill makes those that are not left out.
-struct Some_<'f, W> {
+struct Partial<'f, W> {
     line: Perspective<'f>,
     fill: &'f dyn Fill<Option<W>>,
 }
 
-impl<W: Copy> Colors<W> for Some_<'_, W> {
+impl<W: Copy> Colors<W> for Partial<'_, W> {
     fn make(&mut self, block: &mut Block<'_, W>) {
         let mut made = [None; BLOCK];
         let Some(made) = made.get_mut(..block.words.len()) else {
@@ -92,7 +92,7 @@ pub(super) fn draw_some<F: PixelFormat, D: DepthFormat>(
     fill: &dyn Fill<Option<F::Word>>,
 ) {
     let line = Perspective::new(cover.setup, fill.units());
-    draw(cover, &mut Some_ { line, fill });
+    draw(cover, &mut Partial { line, fill });
 }
 
 /// Draws a triangle, block by block.
@@ -148,7 +148,7 @@ pub(super) fn draw<F: PixelFormat, D: DepthFormat>(
                 }
             }
             if let Some(fog) = fog {
-                fog.fogging.lay_over(y, (nearness.first, step), layers.code.fades_to, words);
+                fog.fogging.lay_over([x, y], (nearness.first, step), layers.code.fades_to, words);
             }
             store::<F, D>(layers, nearness, (words, opacity), (pixels, depth));
         }

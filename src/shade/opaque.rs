@@ -1,4 +1,4 @@
-//! Opaque surfaces: what is visible of them is drawn in place.
+//! Opaque surfaces: what is visible of them is written straight to the band.
 //!
 //! - In: a cover.
 //! - Out: words and depths where the triangle is in front.
@@ -52,7 +52,7 @@ impl<'f, F: PixelFormat> DrawRun<F::Word> for Fogged<'_, 'f, F> {
 
     fn draw_run(&mut self, x: i32, y: i32, pixels: &mut [F::Word]) {
         self.filled.draw_run(x, y, pixels);
-        self.fog.lay_over(y, self.setup.at(&self.setup.z, x, y), None, pixels);
+        self.fog.lay_over([x, y], self.setup.at(&self.setup.z, x, y), None, pixels);
     }
 
     fn again(&mut self) -> Fogged<'_, 'f, F> {

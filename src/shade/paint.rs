@@ -1,4 +1,4 @@
-//! What a shader fills a triangle with, taken to the loop that draws it.
+//! Which loop draws a triangle: that of small ones, of opaque ones, in fog, or in layers.
 //!
 //! - In: a cover, and the fill that a shader chose.
 //! - Out: words and depths where the triangle is seen.

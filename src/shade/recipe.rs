@@ -1,4 +1,8 @@
 //! A material's recipe: the numbers that its loops read.
+//!
+//! - In: what a material says.
+//! - Out: the same, without its type.
+//! - Assumes: nothing.
 
 use crate::scene::{Mask, Texture};
 

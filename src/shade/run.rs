@@ -40,7 +40,7 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
         self.draw(fill);
     }
 
-    /// Never asked for: pictures without a buffer take no surfaces that leave pixels out.
+    /// Never asked for: what leaves pixels out is no opaque material, and a picture without a buffer takes no other.
     fn fill_some(self, _: &dyn Fill<Option<W>>) {}
 }
 

@@ -38,7 +38,7 @@ pub enum Reach {
     Attributes,
     /// Where it is on the screen and how far away, too; and it may be left out.
     Place,
-    /// What the target holds, too. In a list such triangles are drawn last, from back to front, and they write no depth.
+    /// What the target holds, too. Such triangles write no depth; in a list they are drawn last, from back to front.
     Target,
 }
 
@@ -49,9 +49,9 @@ pub struct Fragment<W> {
     pub varying: Varying,
     /// Its column and its row on the screen.
     pub place: [i32; 2],
-    /// near/w, as depth has it: 1 at the near plane and less beyond.
+    /// near/w, as depth has it: 1 at the near plane and less beyond. Of orthographic cameras it is linear, 0 at the far plane.
     pub near_w: U1F31,
-    /// What the target holds.
+    /// The word that the target holds.
     pub target: W,
 }
 
@@ -81,7 +81,8 @@ pub trait Shader<F: PixelFormat> {
     type Quality: Quality;
 
     /// What it needs to know of a pixel beside its attributes. If it is more than those, [`Shader::fragment`] is asked, and
-    /// neither [`Shader::color`] nor [`Shader::paint`].
+    /// neither [`Shader::color`] nor [`Shader::paint`] (but the default `fragment` asks `color`). Each pixel is asked for by itself
+    /// then, and a [`ShadedTriangle`](crate::ShadedTriangle) takes no such shader.
     const REACH: Reach = Reach::Attributes;
 
     /// Which attributes [`Shader::color`] reads; the fewer, the faster.

@@ -4,8 +4,8 @@
 //! - Out: what geometry and set-up have to know of it, and a painter for the triangles that are set up.
 //! - Assumes: nothing.
 //!
-//! A mesh is drawn by one copy of the code before the pixels, whatever its surface. What a type says beyond that, which loops
-//! fill its pixels, stands in a function that is called once a triangle.
+//! Code before the pixels is compiled once, whatever the surface. What differs by its type is one function: it chooses the loops
+//! that fill pixels, and is called once a triangle.
 
 use super::blend::{Code, LayerIn, Opaque};
 use super::cover::{Cover, InFog, LayerCode, Layers};
@@ -45,8 +45,8 @@ pub struct Surface<'a, F: PixelFormat, D: DepthFormat> {
 pub(crate) struct Look<'a, F: PixelFormat, D: DepthFormat> {
     pub(crate) traits: Traits,
     pub(crate) layers: Layers<F, D>,
-    /// Whether a shader asks for the place of a pixel.
-    reads_place: bool,
+    /// Whether a shader asks for near/w at pixels.
+    needs_near_w: bool,
     painter: Painter<'a, F, D>,
 }
 
@@ -92,7 +92,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Surface<'a, F, D> {
             look: Look {
                 traits,
                 layers,
-                reads_place: S::REACH != Reach::Attributes,
+                needs_near_w: S::REACH != Reach::Attributes,
                 painter: Painter::Shader(shader),
             },
         }
@@ -127,7 +127,7 @@ where
             look: Look {
                 traits,
                 layers,
-                reads_place: false,
+                needs_near_w: false,
                 painter: Painter::Material(material.recipe, paint_material::<F, D, K, Q>),
             },
         }
@@ -167,7 +167,7 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
 
     /// What set-up has to do, before a camera that may be orthographic, with colours that may all be grey, in fog or not.
     pub(crate) fn needs(&self, [is_orthographic, is_gray]: [bool; 2], is_foggy: bool) -> Needs {
-        let depth = !D::ALWAYS_PASSES || is_foggy || self.reads_place;
+        let depth = !D::ALWAYS_PASSES || is_foggy || self.needs_near_w;
         let mut needs = self.traits.needs(depth, is_orthographic, is_gray);
         needs.small &= !is_foggy;
         needs

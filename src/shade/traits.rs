@@ -1,7 +1,7 @@
 //! What set-up has to know of a shader.
 //!
-//! - In: a shader, its type forgotten afterwards.
-//! - Out: what set-up needs for its triangles.
+//! - In: a shader.
+//! - Out: the numbers that set-up needs of it, so that set-up need not know its type.
 //! - Assumes: nothing.
 
 use super::quality::Quality;

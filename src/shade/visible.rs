@@ -1,7 +1,7 @@
 //! What is visible of a triangle, run by run.
 //!
 //! - In: a cover, and what draws a run of pixels.
-//! - Out: depths where the triangle is in front, and what the runs draw.
+//! - Out: what the runs draw, and depths where the triangle is in front, if they are stored.
 //! - Assumes: no pixel of a run is left out.
 //!
 //! Each row of a triangle is a span of pixels, and what is visible of a span is one run or several.
@@ -18,8 +18,8 @@ pub(super) trait DrawRun<W> {
 
     fn draw_run(&mut self, x: i32, y: i32, pixels: &mut [W]);
 
-    /// The same, in a place of its own. What is lent out itself has to be read from memory again: 15 cycles a row on a
-    /// Cortex-M0+.
+    /// A copy to be lent to a function. What is lent itself has to be read from memory again afterwards: 15 cycles a row on
+    /// a Cortex-M0+.
     fn again(&mut self) -> Self::Again<'_>;
 }
 

@@ -39,7 +39,11 @@ use heapless::{Vec, VecView};
 /// culled or out of the viewport take nothing. Draws of one mesh with one material or shader in a row count as one. A draw that does not fit is an error, and leaves the list as it was.
 ///
 /// Transparent triangles, those that show what is behind them, are drawn last, from back to front; all others as they were drawn to
-/// the list.
+/// the list. They are sorted by one number, near/w in their middle: long ones that lie across each other want to be cut into pieces.
+/// Cameras of other near planes do not compare: draw a transparent overlay from a list of its own, after the scene's. A draw that adds
+/// transparent triangles sorts all of them, so fewer and larger draws are faster.
+///
+/// A draw takes about 150 bytes, besides, on a chip with pointers of 32 bits.
 ///
 /// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order. Rendering takes `&self`,
 /// and a list is `Send` and `Sync`: two cores can render two bands.
@@ -120,7 +124,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
         [self.vertices.len(), self.triangles.len(), self.draws.len()]
     }
 
-    /// Changes the order from that of drawing to back to front, by the depth (near/w) of triangles' middles on the screen, and as
+    /// Changes the order of all triangles, transparent or not, to back to front, by the depth (near/w) of triangles' middles on the screen, and as
     /// drawn where it is the same: for bands with [`NoDepth`](crate::NoDepth). Call it after the last draw; another changes it
     /// back.
     ///
@@ -191,8 +195,11 @@ impl<F: PixelFormat, D: DepthFormat> Draw<'_, F, D> {
     /// Whether another draw's triangles may count as this one's.
     fn is_like(&self, other: &Self) -> bool {
         self.look.is_like(&other.look)
-            && self.fog.is_none()
-            && other.fog.is_none()
+            && match (&self.fog, &other.fog) {
+                (Some(fog), Some(other)) => fog.is_like(other),
+                (None, None) => true,
+                _ => false,
+            }
             && core::ptr::eq(self.vertices, other.vertices)
             && self.viewport == other.viewport
             && self.cull == other.cull

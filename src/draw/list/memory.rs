@@ -43,7 +43,8 @@ impl Mesh<'_> {
     pub const fn most_in_list(&self) -> [usize; 2] {
         let triangles = self.triangle_count();
         // With colour and texture a corner that is cut takes two vertices.
-        [self.vertices().len() + 2 * MOST_CORNERS * triangles, (MOST_CORNERS - 2) * triangles]
+        let corners = triangles.saturating_mul(2 * MOST_CORNERS);
+        [self.vertices().len().saturating_add(corners), triangles.saturating_mul(MOST_CORNERS - 2)]
     }
 }
 

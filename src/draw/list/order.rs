@@ -10,8 +10,8 @@ use heapless::VecView;
 
 /// The order of a list's triangles. There is room for as many numbers as for triangles.
 pub(super) struct Order<'a> {
-    /// In the order of drawing: the triangles. As recorded: the rows that each [`BLOCK`] of them touch, as [`ListTriangle::rows`]
-    /// has them.
+    /// As recorded: for each [`BLOCK`] of triangles the rows that they touch, as [`ListTriangle::rows`] has them. In any other
+    /// order: the triangles' numbers, the first to be drawn first.
     index: &'a mut VecView<u16>,
     kind: Kind,
 }
@@ -72,7 +72,10 @@ impl<'a> Order<'a> {
             self.forget_sorting(list, first as u16, draws);
         }
         let (start, end) = (first as u16, list.triangles.len() as u16);
-        if is_transparent && self.kind == Kind::AsRecorded && start < end {
+        if start == end {
+            return;
+        }
+        if is_transparent && self.kind == Kind::AsRecorded {
             self.index.clear();
             self.index.extend(0..start);
             self.kind = Kind::TransparentLast(start);
@@ -85,14 +88,14 @@ impl<'a> Order<'a> {
                 } else {
                     let moved = self.index.get_mut(opaque.into()..).unwrap_or_default();
                     moved.rotate_right((end - start).into());
-                    self.kind = Kind::TransparentLast(opaque + end - start);
+                    self.kind = Kind::TransparentLast(opaque + (end - start));
                 }
             }
             _ => self.index_blocks(list.triangles, first / BLOCK),
         }
     }
 
-    /// The order that the triangles before `end` have without having been sorted.
+    /// Rebuilds the order that the draws alone give, of the triangles before `end`.
     #[cold]
     #[inline(never)]
     fn forget_sorting<D: Iterator<Item = (u16, bool)>>(
