@@ -40,8 +40,7 @@ use heapless::{Vec, VecView};
 ///
 /// Transparent triangles, those that show what is behind them, are drawn last, from back to front; all others as they were drawn to
 /// the list. They are sorted by one number, near/w in their middle: long ones that lie across each other want to be cut into pieces.
-/// Cameras of other near planes do not compare: draw a transparent overlay from a list of its own, after the scene's. A draw that adds
-/// transparent triangles sorts all of them, so fewer and larger draws are faster.
+/// Cameras of other near planes do not compare: draw a transparent overlay from a list of its own, after the scene's.
 ///
 /// A draw takes about 150 bytes, besides, on a chip with pointers of 32 bits.
 ///

@@ -48,15 +48,29 @@ impl<'a> Order<'a> {
     pub(super) fn sort_back_to_front(&mut self, list: &ListView<'_>) {
         self.index.clear();
         self.index.extend(0..list.triangles.len() as u16);
-        self.sort_from(0, list);
+        self.sort_from(0, list.triangles.len(), list);
         self.kind = Kind::BackToFront;
     }
 
-    /// Sorts what comes from a place of the index on: back to front, and as recorded where that is the same.
-    fn sort_from(&mut self, start: usize, list: &ListView<'_>) {
+    /// Sorts what comes from a place of the index on: back to front, and as recorded where that is the same. But for the
+    /// last so many it is sorted already.
+    fn sort_from(&mut self, start: usize, last: usize, list: &ListView<'_>) {
         let key =
             |id: u16| (list.triangles.get(usize::from(id)).map_or(0, |triangle| list.nearness(triangle)), id);
-        sort(self.index.get_mut(start..).unwrap_or_default(), key);
+        let ids = self.index.get_mut(start..).unwrap_or_default();
+        if last > ids.len() / 8 {
+            return sort(ids, key);
+        }
+        // A few go to their places one by one.
+        for end in ids.len() - last..ids.len() {
+            let Some((&mut id, sorted)) = ids.get_mut(..=end).and_then(<[_]>::split_last_mut) else {
+                return;
+            };
+            let place = sorted.partition_point(|&other| key(other) < key(id));
+            if let Some(behind) = ids.get_mut(place..=end) {
+                behind.rotate_right(1);
+            }
+        }
     }
 
     /// Takes in the triangles from the `first` on, those of a draw. `draws` are all draws: the triangle behind the last of
@@ -84,7 +98,7 @@ impl<'a> Order<'a> {
             Kind::TransparentLast(opaque) => {
                 self.index.extend(start..end);
                 if is_transparent {
-                    self.sort_from(opaque.into(), list);
+                    self.sort_from(opaque.into(), (end - start).into(), list);
                 } else {
                     let moved = self.index.get_mut(opaque.into()..).unwrap_or_default();
                     moved.rotate_right((end - start).into());
@@ -115,7 +129,7 @@ impl<'a> Order<'a> {
             }
             if transparent && self.index.len() > opaque {
                 self.kind = Kind::TransparentLast(opaque as u16);
-                return self.sort_from(opaque, list);
+                return self.sort_from(opaque, self.index.len() - opaque, list);
             }
         }
         self.index.clear();
@@ -128,6 +142,49 @@ impl<'a> Order<'a> {
         self.index.truncate(complete);
         for block in triangles.get(complete * BLOCK..).unwrap_or_default().chunks(BLOCK) {
             let _ = self.index.push(u16::from_le_bytes(rows_of(block)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::entries::ListVertex;
+    use super::*;
+    use crate::num::U1F31;
+    use heapless::Vec;
+    use proptest::prelude::*;
+    use std::vec;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn transparent_triangles_are_in_order_after_each_draw_in_2_000_cases(
+            draws in prop::collection::vec((1..24_u16, any::<bool>()), 1..24),
+            near_w in prop::collection::vec(0..40_u32, 600),
+        ) {
+            // Many are equally far away.
+            let vertex = |near_w: &u32| ListVertex { q: U1F31::from_bits(near_w << 20), ..ListVertex::default() };
+            let vertices: std::vec::Vec<_> = near_w.iter().map(vertex).collect();
+            let all = draws.iter().map(|(count, _)| count).sum::<u16>();
+            let triangle = |id: u16| ListTriangle { corners: [id, (id + 1) % 600, (id * 7) % 600], rows: [0; 2] };
+            let triangles: std::vec::Vec<_> = (0..all).map(triangle).collect();
+            let mut index = Vec::<u16, 600>::new();
+            let mut order = Order::new(&mut index);
+            let (mut start, mut ends) = (0, vec![]);
+            let (mut opaque, mut transparent) = (vec![], vec![]);
+            for &(count, is_transparent) in &draws {
+                let end = start + count;
+                ends.push((end, is_transparent));
+                let list = ListView { vertices: &vertices, triangles: &triangles[..end.into()] };
+                order.add(&list, start.into(), is_transparent, || ends.iter().copied());
+                (if is_transparent { &mut transparent } else { &mut opaque }).extend(start..end);
+                transparent.sort_by_key(|&id: &u16| (list.nearness(&triangles[usize::from(id)]), id));
+                match order.index() {
+                    Index::Order(ids) => prop_assert_eq!(ids, [&opaque[..], &transparent[..]].concat()),
+                    Index::Rows(_) => prop_assert!(transparent.is_empty()),
+                }
+                start = end;
+            }
         }
     }
 }
