@@ -503,6 +503,52 @@ fn one_list_holds_all_that_a_game_has() {
 }
 
 #[test]
+fn a_clamped_texture_is_a_repeated_one_where_coordinates_stay_inside() {
+    let texels: Vec<u16> = (0..64 * 64_u16).map(|i| i.wrapping_mul(40_503)).collect();
+    let texture = Texture::new(&texels, 6, 6);
+    // Up to its very borders.
+    let corner =
+        || ([-40..110_i32, -30..80_i32], 1..=255_u32, [0..=64 * 16_i32, 0..=64 * 16_i32], any::<[u8; 3]>());
+    let same = std::cell::Cell::new(0);
+    for_all("clamped inside", 2_000, ([corner(), corner(), corner()], any::<bool>()), |(corners, is_lit)| {
+        let vertices = corners.map(|([x, y], q, uv, color)| fixel::ScreenVertex {
+            x: fixel::num::I12F4::from_num(x),
+            y: fixel::num::I12F4::from_num(y),
+            q: fixel::num::U1F31::from_bits(q << 23),
+            u: I16F16::from_bits(uv[0] << 12),
+            v: I16F16::from_bits(uv[1] << 12),
+            color: color.map(fixel::num::U8F8::from),
+        });
+        // Small ones that repeat are drawn at one go, and may bend otherwise.
+        let side = |axis: usize| {
+            let at = corners.iter().map(|(place, ..)| place[axis]);
+            at.clone().max().unwrap_or_default() - at.min().unwrap_or_default()
+        };
+        if side(0).max(side(1)) < 64 {
+            return Ok(());
+        }
+        let (repeated, clamped) = (Material::textured(&texture), Material::clamped(&texture));
+        let surfaces: [Surface<Rgb565, Depth16>; 2] = if is_lit {
+            [repeated.lit().surface(), clamped.lit().surface()]
+        } else {
+            [repeated.surface(), clamped.surface()]
+        };
+        let [left, right] = surfaces.map(|surface| {
+            let (mut pixels, mut depth) = (vec![0; 64 * 48], vec![0; 64 * 48]);
+            let mut band =
+                Band::<Rgb565, Depth16>::new(Size::new(64, 48), &mut pixels, &mut depth).expect("a band");
+            fixel::draw_triangle(&vertices, Cull::None, surface, &mut band).expect("the corners are near");
+            pixels
+        });
+        same.set(same.get() + left.iter().filter(|&&word| word != 0).count());
+        prop_assert!(left == right);
+        Ok(())
+    });
+    println!("{} pixels", same.get());
+    assert!(same.get() > 100_000);
+}
+
+#[test]
 fn whatever_is_called_in_between_a_list_keeps_its_order() {
     let world = World::<Rgb565, Depth16>::new();
     let screen = Size::new(60, 48);

@@ -144,6 +144,17 @@ impl TriangleSetup {
         [first.max((last - 1023).min(0)), last.min(1023)]
     }
 
+    /// Whether u and v, the first two attributes, are everywhere inside a texture of 2^`log2` texels: there it is all the same
+    /// whether it is repeated or clamped.
+    pub(crate) fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
+        self.attributes.iter().zip(log2).all(|(attribute, log2)| {
+            let last = attribute.least.checked_add_unsigned(attribute.range);
+            attribute.scale_log2 == 0
+                && attribute.least >= 0
+                && last.is_some_and(|last| (last >> 16) < 1 << log2)
+        })
+    }
+
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
     #[inline]
     pub(crate) fn at(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {

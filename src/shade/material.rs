@@ -107,8 +107,8 @@ impl<'a> Material<'a, Textured> {
 }
 
 impl<'a> Material<'a, Clamped> {
-    /// A texture whose border texels are seen beyond its borders. For labels and decals: it takes longer to draw than one that
-    /// [repeats](Material::textured), most of all in small triangles.
+    /// A texture whose border texels are seen beyond its borders. For labels and decals. A triangle whose coordinates stay inside the
+    /// texture is drawn as fast as one that [repeats](Material::textured), but for small ones; any other takes several times as long.
     #[must_use]
     pub const fn clamped(texture: &Texture<'a>) -> Self {
         Self::new(Recipe { texture: *texture, ..Recipe::plain(0) })

@@ -22,6 +22,10 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
         self.setup.gray
     }
 
+    fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
+        self.setup.uv_are_inside(log2)
+    }
+
     #[inline]
     fn fill_evenly(self, word: F::Word) {
         draw(self, &Even(word));

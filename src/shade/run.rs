@@ -25,6 +25,10 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
         self.span.setup.gray
     }
 
+    fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
+        self.span.setup.uv_are_inside(log2)
+    }
+
     #[inline]
     fn fill_evenly(self, word: W) {
         self.pixels.fill(word);

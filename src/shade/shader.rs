@@ -194,6 +194,10 @@ pub trait Pixels<W, Q: Quality>: Sealed + Sized {
     #[doc(hidden)]
     fn fill_rows(self, fill: &dyn Fill<W>);
 
+    /// Whether u and v are inside a texture of 2^`log2` texels everywhere.
+    #[doc(hidden)]
+    fn uv_are_inside(&self, log2: [u32; 2]) -> bool;
+
     #[doc(hidden)]
     fn fill_some(self, fill: &dyn Fill<Option<W>>);
 
