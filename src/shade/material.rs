@@ -6,9 +6,8 @@
 
 use super::blend::{Additive, Layer, Multiply, Opaque, ScreenDoor};
 use super::cover::Layering;
-use super::kinds::{
-    Base, Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, LitKind, TexelKind, Textured, VertexAlpha,
-};
+use super::cut_out::{CutOut, VertexAlpha};
+use super::kinds::{Base, Clamped, ColorlessKind, Flat, Gouraud, Kind, LitKind, TexelKind, Textured};
 use super::quality::{Affine, Exact, Quality, QuarterPixel};
 use super::recipe::Recipe;
 use super::shader::{Pixels, Shader, Varying};

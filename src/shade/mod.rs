@@ -7,6 +7,7 @@ mod channels;
 mod colors;
 mod cover;
 mod curve;
+mod cut_out;
 mod fill;
 mod fog;
 mod fragment;
@@ -33,10 +34,10 @@ mod visible;
 
 pub use blend::{Additive, Layer, LayerIn, Masked, Multiply, Opaque, Over, ScreenDoor};
 pub(crate) use cover::{Cover, InFog, Layers};
+pub use cut_out::{CutOut, VertexAlpha};
 pub use fog::Fog;
 pub use kinds::{
-    Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, LitClamped, LitKind, LitTextured, TexelKind,
-    Textured, VertexAlpha,
+    Clamped, ColorlessKind, Flat, Gouraud, Kind, LitClamped, LitKind, LitTextured, TexelKind, Textured,
 };
 pub use material::Material;
 pub(crate) use patch::is_small;

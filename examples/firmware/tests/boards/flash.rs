@@ -28,7 +28,7 @@ const EXACT: &str = "fixel::shade::quality::Exact";
 const AFFINE: &str = "fixel::shade::quality::Affine";
 const CLAMPED: &str = "fixel::scene::texture::Texture>::fetch_clamp";
 const BLENDED: &str = "fixel::shade::layered::";
-const CUT_OUT: &str = "fixel::shade::kinds::CutOut";
+const CUT_OUT: &str = "fixel::shade::cut_out::CutOut";
 const FOG: &str = "fixel::shade::fog::lay_over";
 
 /// What a program must not link. `all` has each of them, which shows that they are still called so.
