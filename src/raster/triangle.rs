@@ -170,6 +170,15 @@ impl TriangleSetup {
         if self.sliver { self.step_in_sliver(plane) } else { plane.steps[0] }
     }
 
+    /// near/w at the first pixel of a span of so many, and its step. One pixel needs no step, which takes a while in a sliver.
+    #[inline(always)]
+    pub(crate) fn near_w_of(&self, x: i32, y: i32, count: usize) -> (u32, i32) {
+        match count {
+            1 if self.sliver => (self.value_in_sliver(&self.z, x, y), 0),
+            _ => self.at(&self.z, x, y),
+        }
+    }
+
     /// q with what rounding errors took below the least or above the greatest value at a corner taken away.
     #[inline]
     pub(crate) fn bounded(&self, q: u32) -> u32 {

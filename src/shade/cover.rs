@@ -42,10 +42,10 @@ pub(crate) struct InFog<'a, F: PixelFormat, D: DepthFormat> {
     pub(super) draw_opaque: DrawFill<F, D>,
 }
 
-impl<F: PixelFormat, D: DepthFormat> InFog<'_, F, D> {
-    /// Whether they do the same.
-    pub(crate) fn is_like(&self, other: &Self) -> bool {
-        self.fogging.is_like(&other.fogging)
+/// Whether they do the same.
+impl<F: PixelFormat, D: DepthFormat> PartialEq for InFog<'_, F, D> {
+    fn eq(&self, other: &Self) -> bool {
+        self.fogging == other.fogging
     }
 }
 
@@ -104,21 +104,17 @@ impl<F: PixelFormat, D: DepthFormat> LayerCode<F, D> {
         is_screen_door: false,
         reads_target: false,
     };
+
+    /// Of a shader that shows what is behind it.
+    pub(crate) const READS_TARGET: Self = Self { reads_target: true, ..Self::OPAQUE };
+
     /// Whether they do the same.
     fn is_like(&self, other: &Self) -> bool {
-        let same_blend = match (self.blend, other.blend) {
-            (Some(blend), Some(other)) => core::ptr::fn_addr_eq(blend, other),
-            (None, None) => true,
-            _ => false,
-        };
-        same_blend
+        are_one(self.blend, other.blend, |a, b| core::ptr::fn_addr_eq(a, b))
             && self.draw.is_some() == other.draw.is_some()
             && self.is_screen_door == other.is_screen_door
             && self.reads_target == other.reads_target
     }
-
-    /// Of a shader that shows what is behind it.
-    pub(crate) const READS_TARGET: Self = Self { reads_target: true, ..Self::OPAQUE };
 }
 
 impl<F: PixelFormat, D: DepthFormat> Layers<F, D> {
@@ -133,12 +129,18 @@ impl<F: PixelFormat, D: DepthFormat> Layers<F, D> {
 
     /// Whether they do the same.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
-        let same_opacity = match (self.opacity, other.opacity) {
-            (Some(opacity), Some(other)) => core::ptr::fn_addr_eq(opacity, other),
-            (None, None) => true,
-            _ => false,
-        };
-        same_opacity && self.code.is_like(other.code) && self.layering == other.layering
+        are_one(self.opacity, other.opacity, |a, b| core::ptr::fn_addr_eq(a, b))
+            && self.code.is_like(other.code)
+            && self.layering == other.layering
+    }
+}
+
+/// Whether there is neither of two functions, or both are one.
+fn are_one<T>(a: Option<T>, b: Option<T>, are_one: impl Fn(T, T) -> bool) -> bool {
+    match (a, b) {
+        (Some(a), Some(b)) => are_one(a, b),
+        (None, None) => true,
+        _ => false,
     }
 }
 

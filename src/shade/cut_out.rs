@@ -75,7 +75,6 @@ impl<K: TexelKind> CutOut<K> {
 /// Texel and mask are found at the same coordinates, so that a hole never shows its neighbour.
 impl<K: TexelKind> Kind for CutOut<K> {
     const INPUTS: Inputs = K::INPUTS;
-    const HAS_SMALL: bool = false;
 
     fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
         K::color::<F>(recipe, varying)
@@ -100,7 +99,6 @@ impl<K: TexelKind> Kind for CutOut<K> {
 impl<K: ColorlessKind> Kind for VertexAlpha<K> {
     const INPUTS: Inputs = if matches!(K::INPUTS, Inputs::Uv) { Inputs::UvColor } else { Inputs::Color };
     const IS_PACKED: bool = K::IS_PACKED;
-    const HAS_SMALL: bool = false;
 
     fn opacity<Q: Quality>() -> Option<Opacity> {
         let is_textured = matches!(K::INPUTS, Inputs::Uv);

@@ -101,11 +101,6 @@ impl<'a> Fog<'a> {
 /// The same numbers, and the same gradient and table in memory: their values are not compared.
 impl PartialEq for Fog<'_> {
     fn eq(&self, other: &Self) -> bool {
-        let same_gradient = match (self.gradient, other.gradient) {
-            (Some(gradient), Some(other)) => core::ptr::eq(gradient, other),
-            (None, None) => true,
-            _ => false,
-        };
         let same_amount = match (self.amount, other.amount) {
             (Amount::Linear { start, end }, Amount::Linear { start: s, end: e }) => [start, end] == [s, e],
             (Amount::Exponential { density }, Amount::Exponential { density: other }) => density == other,
@@ -114,7 +109,9 @@ impl PartialEq for Fog<'_> {
             }
             _ => false,
         };
-        same_gradient && same_amount && self.color == other.color
+        same_amount
+            && self.gradient.map(core::ptr::from_ref) == other.gradient.map(core::ptr::from_ref)
+            && self.color == other.color
     }
 }
 
@@ -148,12 +145,14 @@ impl<F: PixelFormat> Clone for Fogging<'_, F> {
 
 impl<F: PixelFormat> Copy for Fogging<'_, F> {}
 
-impl<'a, F: PixelFormat> Fogging<'a, F> {
-    /// Whether they are the same fog before like cameras.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
+/// Whether they are the same fog before like cameras.
+impl<F: PixelFormat> PartialEq for Fogging<'_, F> {
+    fn eq(&self, other: &Self) -> bool {
         self.fog == other.fog && self.depth == other.depth
     }
+}
 
+impl<'a, F: PixelFormat> Fogging<'a, F> {
     pub(crate) fn new(fog: Fog<'a>, camera: &Camera) -> Self
     where
         F: BlendFormat,

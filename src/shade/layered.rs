@@ -111,11 +111,7 @@ pub(super) fn draw<F: PixelFormat, D: DepthFormat>(
             return;
         };
         let depth = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)).unwrap_or_default();
-        // One pixel needs no step, which takes a while in a sliver.
-        let (mut near_w, step) = match count {
-            1 if setup.sliver => (setup.value_in_sliver(&setup.z, start, y), 0),
-            _ => setup.at(&setup.z, start, y),
-        };
+        let (mut near_w, step) = setup.near_w_of(start, y, count);
         let mut depth = depth.chunks_mut(BLOCK);
         for (x, pixels) in (start..).step_by(BLOCK).zip(pixels.chunks_mut(BLOCK)) {
             let depth = depth.next().unwrap_or_default();

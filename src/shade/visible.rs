@@ -42,11 +42,7 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
             let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                 return;
             };
-            // One pixel needs no step, which takes a while in a sliver.
-            let z = match count {
-                1 if setup.sliver => (setup.value_in_sliver(&setup.z, start, y), 0),
-                _ => setup.at(&setup.z, start, y),
-            };
+            let z = setup.near_w_of(start, y, count);
             let passed = first_visible::<D, STORES>(depth, z);
             if passed != Some(count) {
                 return draw_visible::<STORES, F::Word, D>(

@@ -36,7 +36,8 @@ use heapless::{Vec, VecView};
 /// Of a mesh only the vertices of triangles that are seen stay in the list, but while
 /// it is drawn there has to be room for all from the first to the last that it names. (A corner that clipping makes takes a
 /// vertex, and two if it has both colour and texture; a triangle that is lit as a face takes three of its own.) Triangles that are
-/// culled or out of the viewport take nothing. Draws of one mesh with one material or shader in a row count as one. A draw that does not fit is an error, and leaves the list as it was.
+/// culled or out of the viewport take nothing. Draws of one mesh with one material or shader in a row count as one. A draw that does
+/// not fit is an error, and leaves the list as it was.
 ///
 /// Transparent triangles, those that show what is behind them, are drawn last, from back to front; all others as they were drawn to
 /// the list. They are sorted by one number, near/w in their middle: long ones that lie across each other want to be cut into pieces.
@@ -44,8 +45,8 @@ use heapless::{Vec, VecView};
 ///
 /// A draw takes about 150 bytes, besides, on a chip with pointers of 32 bits.
 ///
-/// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order. Rendering takes `&self`,
-/// and a list is `Send` and `Sync`: two cores can render two bands.
+/// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order.
+/// Rendering takes `&self`, and a list is `Send` and `Sync`: two cores can render two bands.
 ///
 /// ```
 /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
@@ -123,9 +124,9 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
         [self.vertices.len(), self.triangles.len(), self.draws.len()]
     }
 
-    /// Changes the order of all triangles, transparent or not, to back to front, by the depth (near/w) of triangles' middles on the screen, and as
-    /// drawn where it is the same: for bands with [`NoDepth`](crate::NoDepth). Call it after the last draw; another changes it
-    /// back.
+    /// Changes the order of all triangles, transparent or not, to back to front, by the depth (near/w) of triangles' middles on
+    /// the screen, and as drawn where it is the same: for bands with [`NoDepth`](crate::NoDepth). Call it after the last draw;
+    /// another changes it back.
     ///
     /// Where triangles cut through each other, or long ones overlap in a circle, no order is right: that takes depth.
     pub fn sort_back_to_front(&mut self) {
@@ -194,11 +195,7 @@ impl<F: PixelFormat, D: DepthFormat> Draw<'_, F, D> {
     /// Whether another draw's triangles may count as this one's.
     fn is_like(&self, other: &Self) -> bool {
         self.look.is_like(&other.look)
-            && match (&self.fog, &other.fog) {
-                (Some(fog), Some(other)) => fog.is_like(other),
-                (None, None) => true,
-                _ => false,
-            }
+            && self.fog == other.fog
             && core::ptr::eq(self.vertices, other.vertices)
             && self.viewport == other.viewport
             && self.cull == other.cull
