@@ -90,6 +90,19 @@ const fn mul_17_split(a: i32, b: u32) -> i32 {
     (a >> 16) * b as i32 + ((((a as u32 & 0xffff) >> 1) * b) >> 15) as i32
 }
 
+/// `a · b / 2²⁰` rounded down, for `a` without its last 8 bits and a `b` of 0 … 2²⁰: likewise.
+#[inline]
+pub(crate) const fn mul_20(a: i32, b: u32) -> i32 {
+    debug_assert!(b <= 1 << 20);
+    if IS_ARMV6M { mul_20_split(a, b) } else { (((a & !0xff) as i64 * b as i32 as i64) >> 20) as i32 }
+}
+
+#[inline]
+const fn mul_20_split(a: i32, b: u32) -> i32 {
+    // −2¹¹ · 2²⁰ … and 12 bits by 20.
+    (a >> 20) * b as i32 + ((((a as u32) << 12 >> 20) * b) >> 12) as i32
+}
+
 /// `a · b / 2^S`, rounded to nearest, halves up; the low 32 bits of it.
 #[inline]
 pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
@@ -254,6 +267,13 @@ mod tests {
             for a in [a >> 1, -1 << 30, (1 << 30) - 1, a >> 16] {
                 for b in [b, (1 << 17) - 1, 0xffff] {
                     prop_assert_eq!(i64::from(mul_17_split(a, b)), exactly(a & !1, b.into()));
+                }
+            }
+            for a in [a, i32::MIN, i32::MAX, a >> 16] {
+                for b in [b << 3, 1 << 20, (1 << 20) - 1, b] {
+                    let exactly = exactly(a & !0xff, b.into()) >> 4;
+                    prop_assert_eq!(i64::from(mul_20_split(a, b)), exactly);
+                    prop_assert_eq!(i64::from(mul_20(a, b)), exactly);
                 }
             }
         }

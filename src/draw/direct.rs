@@ -17,9 +17,7 @@
 //! screen the target is, so a part of a picture that is drawn anew fits the rest.
 
 use crate::frame::{NoDepth, PixelFormat, Window};
-use crate::geometry::{
-    Clip, Cull, MOST_CORNERS, Oriented, ScreenVertex, ToClip, VertexColors, piece, position,
-};
+use crate::geometry::{Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, VertexColors, piece, position};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
@@ -282,8 +280,7 @@ pub(crate) struct Quad {
 struct Posed {
     vertices: [Vertex; 4],
     are_cut_off: [bool; 4],
-    to_clip: ToClip,
-    clip: Clip,
+    placing: Placing,
     viewport: Viewport,
     is_orthographic: bool,
     is_mirrored: bool,
@@ -307,19 +304,18 @@ impl Quad {
         let corner = |x, y| Vertex { position: [x, y, I4F12::ZERO], ..Default::default() };
         // At most 7.9998, which has a negative.
         let vertices = [corner(-right, top), corner(-right, -top), corner(right, -top), corner(right, top)];
-        let to_clip = ToClip::new(projection, camera, pose);
-        let clip = Clip::new(projection, to_clip.unit_bits());
+        let mut placing = Placing::new(projection, camera, pose);
         let bounds = Mesh::try_new(&vertices, &[]).ok().map(|mesh| *mesh.bounds())?;
-        if !clip.sees(&to_clip, &bounds, projection) {
+        if !placing.sees(projection, &bounds) {
             return None;
         }
         let (mut corners, mut are_cut_off) = ([ScreenVertex::default(); 4], [false; 4]);
         for i in 0..4 {
-            are_cut_off[i] = !clip.place(&to_clip, &VertexColors::default(), &vertices[i], &mut corners[i]);
+            are_cut_off[i] = !placing.place_bare(&vertices[i], &mut corners[i]);
         }
         let (viewport, is_orthographic) = (projection.viewport, projection.orthographic);
         let is_mirrored = camera.is_mirrored() != pose.is_mirrored();
-        let posed = Posed { vertices, are_cut_off, to_clip, clip, viewport, is_orthographic, is_mirrored };
+        let posed = Posed { vertices, are_cut_off, placing, viewport, is_orthographic, is_mirrored };
         Some(Self { corners, posed: Some(posed) })
     }
 
@@ -388,6 +384,9 @@ impl Posed {
     #[inline(never)]
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
-        self.clip.cut(&self.to_clip, &VertexColors::default(), triangle.each_ref(), to)
+        let colors = VertexColors::default();
+        self.placing
+            .clipping()
+            .map_or((0, false), |(to_clip, clip)| clip.cut(to_clip, &colors, triangle.each_ref(), to))
     }
 }

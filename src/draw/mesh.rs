@@ -7,7 +7,7 @@
 use super::sight::Sight;
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry::{Assembler, Clip, Count, ToClip, VertexCache};
+use crate::geometry::{Assembler, Count, Placing, VertexCache};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
@@ -24,17 +24,15 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     stats.count(|stats| &mut stats.meshes);
     let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
     let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
-    let to_clip = ToClip::new(projection, camera, pose);
-    let clip = Clip::new(projection, to_clip.unit_bits());
-    let is_seen = clip.sees(&to_clip, mesh.bounds(), projection);
     let window = band.window().within(&projection.viewport);
-    if window.is_empty() || !is_seen {
+    let mut placing = Placing::new(projection, camera, pose);
+    if window.is_empty() || !placing.sees(projection, mesh.bounds()) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
     let colors = surface.coloring.colors(sight.lights, pose);
     let light_face = surface.coloring.light_face(sight.lights);
-    let assembler = Assembler { mesh, to_clip: &to_clip, clip: &clip, coloring: &colors, cull, light_face };
+    let assembler = Assembler { mesh, placing: &placing, coloring: &colors, cull, light_face };
     let mut raster =
         Raster::new((&surface.look, sight.fog.as_ref()), [projection.orthographic, false], window, band);
     let mut cache = VertexCache::ZERO;

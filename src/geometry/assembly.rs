@@ -8,14 +8,13 @@
 //! vertices of triangles that are left get attributes and light. So the cache may hold vertices without attributes. A
 //! triangle that has to be clipped takes the cache's memory for its polygon, and the cache is empty afterwards.
 
-use super::clip::Clip;
 use super::cut::MOST_CORNERS;
 use super::fan::piece;
 use super::orient::{Cull, Oriented, area, position};
 use super::screen::ScreenVertex;
 use super::stats::Count;
-use super::transform::ToClip;
 use super::vertex_colors::{VertexColors, dim};
+use super::whole::Placing;
 use crate::num::I16F16;
 use crate::scene::{Mesh, Vertex};
 
@@ -111,8 +110,7 @@ pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache, usize);
 /// drawn.
 pub(crate) struct Assembler<'a> {
     pub(crate) mesh: &'a Mesh<'a>,
-    pub(crate) to_clip: &'a ToClip,
-    pub(crate) clip: &'a Clip,
+    pub(crate) placing: &'a Placing,
     pub(crate) coloring: &'a VertexColors<'a>,
     pub(crate) cull: Cull,
     /// [`light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
@@ -198,7 +196,8 @@ impl Assembler<'_> {
         let slot = cache.give(index, used);
         let to = &mut cache.vertices[slot];
         to.u = MISSING;
-        if self.clip.place_bare(self.to_clip, self.mesh.vertex(index), to) { slot } else { CACHED }
+        let vertex = self.mesh.vertex(index);
+        if self.placing.place_bare(vertex, to) { slot } else { CACHED }
     }
 
     /// Gives a vertex its attributes.
@@ -224,7 +223,10 @@ impl Assembler<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
-        let (count, is_folded) = self.clip.cut(self.to_clip, self.coloring, corners, &mut cache.vertices);
+        let Some((to_clip, clip)) = self.placing.clipping() else {
+            return;
+        };
+        let (count, is_folded) = clip.cut(to_clip, self.coloring, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }

@@ -18,7 +18,6 @@
 
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
-use super::vertex_colors::VertexColors;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
@@ -44,9 +43,9 @@ pub(crate) struct Clip {
     /// Both planes as the camera has them, for clipping.
     pub(super) planes: [I16F16; 2],
     /// Perspective: near as a mantissa of 31 bits; orthographic: 1/(far − near) as such.
-    depth_mantissa: i32,
+    pub(super) depth_mantissa: i32,
     /// Perspective: the leading zeros of near in clip units; orthographic: those of far − near, less one.
-    depth_zeros: i32,
+    pub(super) depth_zeros: i32,
     /// Screen = centre + x/w · 2^`scale` in 1/16 px.
     pub(super) scale: i32,
     /// The vanishing point, in 1/16 px with [`FINER`] bits more, plus a half, so that what is added to it is rounded to
@@ -168,24 +167,9 @@ impl Clip {
         to_clip.reaches(outside, radius, (axis, self.scale, if self.flat != 0 { 0 } else { slope }))
     }
 
-    /// Puts a vertex that clipping has nothing to do with on the screen; false, and `to` of no use, for another: one that is cut
-    /// off, or so near that clipping places it.
-    pub(crate) fn place(
-        &self,
-        to_clip: &ToClip,
-        coloring: &VertexColors<'_>,
-        vertex: &Vertex,
-        to: &mut ScreenVertex,
-    ) -> bool {
-        let is_inside = self.place_bare(to_clip, vertex, to);
-        if is_inside {
-            to.set_attributes(vertex, coloring);
-        }
-        is_inside
-    }
-
-    /// As [`Clip::place`], the position and q alone, in one function, so that clip coordinates stay in registers: 370 cycles on
-    /// a Cortex-M0+, 180 on an M4.
+    /// Puts a vertex that clipping has nothing to do with on the screen, its position and q alone; false, and `to` of no use, for
+    /// another: one that is cut off, or so near that clipping places it. In one function, so that clip coordinates stay in registers:
+    /// 370 cycles on a Cortex-M0+, 180 on an M4.
     #[inline(never)]
     pub(crate) fn place_bare(&self, to_clip: &ToClip, vertex: &Vertex, to: &mut ScreenVertex) -> bool {
         self.locate(to_clip, vertex, (&mut to.x, &mut to.y, &mut to.q))

@@ -10,6 +10,7 @@ mod screen;
 mod stats;
 mod transform;
 mod vertex_colors;
+mod whole;
 
 pub(crate) use assembly::{Assembler, VertexCache};
 pub(crate) use clip::Clip;
@@ -25,3 +26,4 @@ pub(crate) use stats::Count;
 pub use stats::Stats;
 pub(crate) use transform::ToClip;
 pub(crate) use vertex_colors::{VertexColors, dim, is_gray};
+pub(crate) use whole::Placing;

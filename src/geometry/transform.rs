@@ -14,7 +14,7 @@
 
 use crate::math::Pose;
 use crate::num::{I4F12, I16F16, mul_long, mul_round, shift_round};
-use crate::scene::{Projection, Viewport};
+use crate::scene::{Bounds, Projection, Viewport};
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
 pub(crate) const fn focal_log2(focal: I16F16) -> i32 {
@@ -45,9 +45,10 @@ pub(crate) struct ToClip {
 /// The clip units to a step of each position, within ±2¹³, in two halves, so that three products of either with 16 bits
 /// fit an `i32`.
 struct Row {
-    /// In the upper half rounded, in the lower what that leaves, 15 fraction bits, within ±2¹⁴: one load for both.
+    /// In the upper half rounded, in the lower what that leaves, 15 fraction bits, within ±2¹⁴: one load for both. In a row that is
+    /// [narrow](ToClip::narrow) one number.
     elements: [i32; 3],
-    /// In clip units, within ±2²⁹.
+    /// In clip units, within ±2²⁹. In a narrow row with as many fraction bits as its elements.
     translation: i32,
 }
 
@@ -102,7 +103,7 @@ fn set_rests(
 ) {
     // Elements are steps of 2⁻¹² with 15 fraction bits.
     for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(matrix) {
-        *to = rest(*value, 33 - unit_bits, focal, ((halves >> 16) << 15) + i32::from(halves as i16));
+        *to = rest(*value, 33 - unit_bits, focal, element(halves));
     }
     rests[3] = rest(translation, 16 - unit_bits, focal, row.translation);
 }
@@ -241,6 +242,43 @@ impl ToClip {
         u64::from(outside) * u64::from(outside) <= u64::from(radius * radius) * u64::from(squares)
     }
 
+    /// How far a sphere with this radius reaches along an axis, x, y or w, in clip units, and a little farther: whatever its
+    /// coordinates are rounded by.
+    #[inline(never)]
+    pub(super) fn reach(&self, axis: usize, radius: u32) -> i32 {
+        let elements = self.rows[axis].elements.map(|halves| element(halves).unsigned_abs());
+        // 14 bits of the largest; at most 15 of 29 go.
+        let shift = 18_u32.saturating_sub((elements[0] | elements[1] | elements[2]).leading_zeros());
+        let squares = elements.map(|element| (element >> shift) + 1).map(|element| element * element);
+        let length = root(squares[0] + squares[1] + squares[2]) + 1;
+        // 17 bits by 15, and at most 2³⁰ in clip units.
+        ((radius * length) >> (15 - shift)) as i32 + radius as i32 + 8
+    }
+
+    /// Makes a row narrow: with `bits` fraction bits (0 … 15), exact at the bounds' centre. From then on it is one for
+    /// [`place_narrow`](Self::place_narrow) alone.
+    #[inline(never)]
+    pub(super) fn narrow(&mut self, axis: usize, bits: u32, bounds: &Bounds) {
+        let dropped = 15 - bits;
+        let half = (1 << dropped) >> 1;
+        let row = &mut self.rows[axis];
+        let mut rest = half;
+        for (to, at) in row.elements.iter_mut().zip(bounds.center) {
+            let element = element(*to);
+            *to = (element + half) >> dropped;
+            // Within ±2¹⁴ · 2¹⁵.
+            rest += (element - (*to << dropped)) * i32::from(at.to_bits());
+        }
+        row.translation = (row.translation << bits).wrapping_add(rest >> dropped);
+    }
+
+    /// Along one axis by a row that is narrow: 3 products. The sum fits, but may wrap around in between.
+    #[inline(always)]
+    pub(super) fn place_narrow(&self, position: [i32; 3], axis: usize) -> i32 {
+        let Row { elements, translation } = self.rows[axis];
+        (0..3).fold(translation, |sum, i| sum.wrapping_add(elements[i].wrapping_mul(position[i])))
+    }
+
     /// Places one vertex along one axis, x, y or w: 6 short multiplications.
     #[inline(always)]
     pub(crate) fn place(&self, position: [i32; 3], axis: usize) -> i32 {
@@ -263,6 +301,25 @@ impl ToClip {
         let position = position.map(|at| i32::from(at.to_bits()));
         self.rows.each_ref().map(|row| row.place(position))
     }
+}
+
+/// An element of a [`Row`] in one, 15 fraction bits.
+fn element(halves: i32) -> i32 {
+    ((halves >> 16) << 15) + i32::from(halves as i16)
+}
+
+/// The square root, rounded down, of up to 30 bits.
+#[inline(never)]
+fn root(square: u32) -> u32 {
+    let (mut root, mut bit) = (0, 1 << 14);
+    while bit > 0 {
+        let with = root + bit;
+        if with * with <= square {
+            root = with;
+        }
+        bit >>= 1;
+    }
+    root
 }
 
 fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {

@@ -13,7 +13,7 @@ use super::compact::move_together;
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::style::Style;
 use crate::frame::Window;
-use crate::geometry::{Clip, Count, Inputs, MOST_CORNERS, ScreenVertex, ToClip, area, dim, in_order};
+use crate::geometry::{Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, area, dim, in_order};
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
 use crate::raster::rows_of_folded;
@@ -28,8 +28,7 @@ struct Recorder<'l, 'm> {
     vertices: &'l mut VecView<ListVertex>,
     triangles: &'l mut VecView<ListTriangle>,
     mesh: &'l Mesh<'m>,
-    to_clip: ToClip,
-    clip: Clip,
+    placing: Placing,
     style: &'l Style<'l>,
     window: Window,
     /// What is added to a vertex's index, wrapping, to get its slot.
@@ -58,9 +57,8 @@ pub(crate) fn record(
 ) -> Result<bool, CapacityError> {
     stats.count(|stats| &mut stats.meshes);
     let window = Window::LARGEST.within(&projection.viewport);
-    let to_clip = ToClip::new(projection, camera, pose);
-    let clip = Clip::new(projection, to_clip.unit_bits());
-    if window.is_empty() || !clip.sees(&to_clip, mesh.bounds(), projection) {
+    let mut placing = Placing::new(projection, camera, pose);
+    if window.is_empty() || !placing.sees(projection, mesh.bounds()) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return Ok(true);
     }
@@ -79,8 +77,7 @@ pub(crate) fn record(
         vertices,
         triangles,
         mesh,
-        to_clip,
-        clip,
+        placing,
         style,
         window,
         to_slot,
@@ -124,7 +121,7 @@ impl Recorder<'_, '_> {
         let of_mesh = self.mesh.vertices().get(usize::from(first)..).unwrap_or_default();
         for (slot, vertex) in slots.iter_mut().zip(of_mesh) {
             stats.count(|stats| &mut stats.transformed);
-            if !self.clip.locate(&self.to_clip, vertex, (&mut slot.x, &mut slot.y, &mut slot.q)) {
+            if !self.placing.place(vertex, (&mut slot.x, &mut slot.y, &mut slot.q)) {
                 slot.x = CUT_OFF;
                 self.is_any_cut_off = true;
             }
@@ -268,9 +265,12 @@ impl Recorder<'_, '_> {
     #[inline(never)]
     fn add_cut(&mut self, indices: [u16; 3], stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
+        let Some((to_clip, clip)) = self.placing.clipping() else {
+            return;
+        };
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        let (count, is_folded) = self.clip.cut(&self.to_clip, &self.style.coloring, corners, &mut polygon);
+        let (count, is_folded) = clip.cut(to_clip, &self.style.coloring, corners, &mut polygon);
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
         }
