@@ -13,7 +13,7 @@
 //! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
 use crate::math::Pose;
-use crate::num::{I4F12, I16F16, mul_long, mul_round, shift_round};
+use crate::num::{I4F12, I16F16, U10F22, mul_long, mul_round, shift_round, wide};
 use crate::scene::{Bounds, Projection, Viewport};
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
@@ -44,6 +44,7 @@ pub(crate) struct ToClip {
 ///
 /// The clip units to a step of each position, within ±2¹³, in two halves, so that three products of either with 16 bits
 /// fit an `i32`.
+#[derive(Clone, Copy)]
 struct Row {
     /// In the upper half rounded, in the lower what that leaves, 15 fraction bits, within ±2¹⁴: one load for both. In a row that is
     /// [narrow](ToClip::narrow) one number.
@@ -53,15 +54,6 @@ struct Row {
 }
 
 impl Row {
-    /// From elements of 15 fraction bits.
-    fn new(elements: [i32; 3], translation: i32) -> Self {
-        let halves = |element: i32| {
-            let whole = (element + (1 << 14)) >> 15;
-            whole << 16 | i32::from((element - (whole << 15)) as u16)
-        };
-        Self { elements: elements.map(halves), translation }
-    }
-
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
         let (mut whole, mut rest) = (self.translation, 0);
@@ -141,35 +133,19 @@ pub(super) fn least_w(projection: &Projection, unit_bits: i32) -> i32 {
     }
 }
 
-/// Rows of eye space turned into rows of clip space: y down, w along −z.
-const SIGNS: [i64; 3] = [1, -1, -1];
-
 impl ToClip {
+    /// Once a mesh. What is done nine times is a function of its own, so that it is there once.
     #[inline(never)]
     pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        // The camera's axes are the columns of its rotation; what it sees is turned by the rows.
-        let axis = |row: usize| camera.rotation.map(|r| i64::from(r[row].to_bits()));
-        let distance: [i64; 3] = {
-            let (to, from) = (pose.translation.bits(), camera.translation.bits());
-            core::array::from_fn(|i| i64::from(to[i]) - i64::from(from[i]))
-        };
-        let scale = pose.scale.map(|scale| i64::from(scale.to_bits()));
-        // 28 fraction bits (4.0 at most) times 22 are 50; 14 times 16 are 30.
-        let mut matrix = [[0i64; 3]; 3];
-        let mut translation = [0i64; 3];
-        for (row, sign) in SIGNS.iter().enumerate() {
-            let axis = axis(row).map(|component| component * sign);
-            matrix[row] = core::array::from_fn(|column| {
-                let sum = dot(axis, pose.rotation.map(|r| i64::from(r[column].to_bits())));
-                sum.clamp(-1 << 30, 1 << 30) * scale[column]
-            });
-            translation[row] = dot(axis, distance);
+        let mut exact = Exact { matrix: [[0; 3]; 3], translation: [0; 3], all: [0; 2] };
+        for row in 0..3 {
+            exact.set_row(row, camera, pose);
         }
-
-        let excess = bits(matrix.as_flattened()) - 30;
+        let [of_matrix, of_translation] = exact.all.map(|all| 64 - all.leading_zeros() as i32);
+        let excess = of_matrix - 30;
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
-        let unit_bits = (59 - bits(&translation)).min(fraction_bits - 5).min(FINEST);
+        let unit_bits = (59 - of_translation).min(fraction_bits - 5).min(FINEST);
         // Without perspective depth reaches from plane to plane: the far one has to be among the clip coordinates.
         let far_bits = if projection.orthographic {
             // And 1 is what divides.
@@ -178,22 +154,21 @@ impl ToClip {
             FINEST
         };
         let unit_bits = unit_bits.min(far_bits);
-        let to_i32 = |value, shift: i32| {
-            (if shift >= 0 { shift_round(value, shift.min(63) as u32) } else { value << -shift.max(-63) })
-                as i32
-        };
         let focal = projection.focal.to_bits();
         let focal = focal << (focal.leading_zeros() - 1); // 2³⁰ … 2³¹ − 1
+        let focal = [focal, focal, 0];
         // At least 1.
         let shift = (fraction_bits - 4 - unit_bits).min(31);
-        let rows = core::array::from_fn(|row| {
-            let times_focal = |value| if row < 2 { mul_round::<31>(value, focal) } else { value };
-            let elements = matrix[row].map(|element| {
+        let mut rows = [Row { elements: [0; 3], translation: 0 }; 3];
+        for ((row, focal), (matrix, translation)) in
+            rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
+        {
+            for (to, element) in row.elements.iter_mut().zip(matrix) {
                 // 30 bits; then 15 fraction bits.
-                ((times_focal(to_i32(element, excess)) >> shift) + 1) >> 1
-            });
-            Row::new(elements, times_focal(to_i32(translation[row], 30 - unit_bits)))
-        });
+                *to = halves(((shortened(*element, excess, focal) >> shift) + 1) >> 1);
+            }
+            row.translation = shortened(translation, 30 - unit_bits, focal);
+        }
         let least = least_w(projection, unit_bits);
         // The near plane may be nearer than that, in 1/65536.
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
@@ -201,8 +176,8 @@ impl ToClip {
         let mut rests = [[0; 4]; 3];
         if is_fine {
             for row in 0..3 {
-                let focal = if row < 2 { focal } else { 0 };
-                set_rests(&mut rests[row], &rows[row], &matrix[row], translation[row], focal, unit_bits);
+                let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
+                set_rests(&mut rests[row], &rows[row], matrix, translation, focal[row], unit_bits);
             }
         }
         Self { rows, rests, unit_bits }
@@ -303,7 +278,13 @@ impl ToClip {
     }
 }
 
-/// An element of a [`Row`] in one, 15 fraction bits.
+/// An element of a [`Row`], from one of 15 fraction bits.
+fn halves(element: i32) -> i32 {
+    let whole = (element + (1 << 14)) >> 15;
+    whole << 16 | i32::from((element - (whole << 15)) as u16)
+}
+
+/// The opposite of [`halves`].
 fn element(halves: i32) -> i32 {
     ((halves >> 16) << 15) + i32::from(halves as i16)
 }
@@ -317,16 +298,59 @@ fn root(square: u32) -> u32 {
         if with * with <= square {
             root = with;
         }
-        bit >>= 1;
+        bit = core::hint::black_box(bit >> 1); // or the loop is unrolled 15 times
     }
     root
 }
 
-fn dot(a: [i64; 3], b: [i64; 3]) -> i64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// The matrix before it is rounded, without the focal length.
+struct Exact {
+    /// 28 fraction bits (4.0 at most) times 22 are 50.
+    matrix: [[i64; 3]; 3],
+    /// 14 times 16 are 30.
+    translation: [i64; 3],
+    /// The bits that are in any of either.
+    all: [u64; 2],
 }
 
-/// How many bits the largest magnitude has.
-fn bits(values: &[i64]) -> i32 {
-    64 - values.iter().fold(0, |all, value| all | value.unsigned_abs()).leading_zeros() as i32
+impl Exact {
+    /// Sets the row for x, y or w. The camera's axes are the columns of its rotation, and what it sees is turned by the rows; in
+    /// clip space y is down and w along −z.
+    #[inline(never)]
+    fn set_row(&mut self, row: usize, camera: &Pose, pose: &Pose) {
+        let axis =
+            camera.rotation.map(|r| i32::from(r[row].to_bits())).map(|at| if row == 0 { at } else { -at });
+        let [to, from] = [pose, camera].map(|pose| along(axis, pose.translation.bits()));
+        self.translation[row] = to - from;
+        self.all[1] |= (to - from).unsigned_abs();
+        for (column, to) in self.matrix[row].iter_mut().enumerate() {
+            let turned = pose.rotation.map(|r| i32::from(r[column].to_bits()));
+            // Products are within ±2³⁰.
+            let sum = (0..3).fold(0_i32, |sum, i| sum.saturating_add(axis[i] * turned[i]));
+            *to = scaled(sum.clamp(-1 << 30, 1 << 30), pose.scale[column]);
+            self.all[0] |= to.unsigned_abs();
+        }
+    }
+}
+
+/// A vector's length along an axis.
+#[inline(never)]
+fn along(axis: [i32; 3], vector: [i32; 3]) -> i64 {
+    let [x, y, z] = axis;
+    wide(x, vector[0]) + wide(y, vector[1]) + wide(z, vector[2])
+}
+
+#[inline(never)]
+fn scaled(value: i32, scale: U10F22) -> i64 {
+    // One of 32 bits without sign: its last one goes apart.
+    let scale = scale.to_bits();
+    (wide(value, (scale >> 1) as i32) << 1) + i64::from(if scale & 1 == 0 { 0 } else { value })
+}
+
+/// A number without its last `dropped` bits, or with so many more, times the focal length's mantissa, if that is not 0.
+#[inline(never)]
+fn shortened(value: i64, dropped: i32, focal: i32) -> i32 {
+    let value =
+        if dropped >= 0 { shift_round(value, dropped.min(63) as u32) } else { value << -dropped.max(-63) };
+    if focal != 0 { mul_round::<31>(value as i32, focal) } else { value as i32 }
 }
