@@ -18,6 +18,7 @@
 
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
+use super::whole::Shifts;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
@@ -40,6 +41,8 @@ pub(crate) struct Clip {
     pub(super) least: i32,
     /// Whether that is further than the near plane, so that clipping has to take all bits that it has.
     pub(super) is_fine: bool,
+    /// If the mesh is whole, how it is placed: see [`whole`](super::whole). Else, and until that is known, `None`.
+    pub(super) whole: Option<Shifts>,
     /// Both planes as the camera has them, for clipping.
     pub(super) planes: [I16F16; 2],
     /// Perspective: near as a mantissa of 31 bits; orthographic: 1/(far − near) as such.
@@ -103,6 +106,7 @@ impl Clip {
             far,
             least: near.max(least),
             is_fine: near < least,
+            whole: None,
             planes: [projection.near, projection.far],
             depth_mantissa,
             depth_zeros,
@@ -127,9 +131,14 @@ impl Clip {
         if self.flat != 0 { 1 << self.flat } else { w }
     }
 
-    /// Whether anything within a mesh's bounds may be seen through the viewport, between the planes.
+    /// The middle of a mesh's bounds in clip space, if anything within these may be seen through the viewport, between the planes.
     #[inline(never)]
-    pub(crate) fn sees(&self, to_clip: &ToClip, bounds: &Bounds, projection: &Projection) -> bool {
+    pub(super) fn sees(
+        &self,
+        to_clip: &ToClip,
+        bounds: &Bounds,
+        projection: &Projection,
+    ) -> Option<[i32; 3]> {
         let center @ [.., w] = to_clip.place_all(bounds.center);
         let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
         let [near, far] = [projection.near, projection.far].map(|at| Self::distance_of(to_clip, at) >> FINE);
@@ -139,7 +148,7 @@ impl Clip {
             || !to_clip.reaches(before, radius, (2, 0, 0))
             || !to_clip.reaches(beyond, radius, (2, 0, 0))
         {
-            return false;
+            return None;
         }
         let sides = [
             (0, -1, i32::from(viewport.left)),
@@ -147,10 +156,11 @@ impl Clip {
             (1, -1, i32::from(viewport.top)),
             (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
         ];
-        sides.into_iter().all(|(axis, sign, side)| {
+        let is_seen = sides.into_iter().all(|(axis, sign, side)| {
             let slope = side * 16 - projection.center[axis];
             self.reaches(to_clip, [center[axis], w], radius, (axis, sign, slope))
-        })
+        });
+        is_seen.then_some(center)
     }
 
     /// Whether bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that lies at

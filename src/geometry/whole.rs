@@ -38,12 +38,11 @@ pub(crate) struct Placing {
     /// Its rows are narrow if the mesh is whole.
     to_clip: ToClip,
     clip: Clip,
-    whole: Option<Shifts>,
 }
 
 /// How far products with 1/w are shifted, for a w without leading zeros.
 #[derive(Clone, Copy)]
-struct Shifts {
+pub(super) struct Shifts {
     /// For q, less one bit.
     depth: u8,
     /// For x and y.
@@ -58,38 +57,37 @@ const MOST_BITS: u32 = 15;
 const FARTHEST: i32 = 640 * 16;
 
 impl Placing {
-    /// Not inlined: what it takes is not on the stack while pixels are drawn.
-    #[inline(never)]
+    /// Inlined, so that nothing is copied.
+    #[inline(always)]
     pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
         let to_clip = ToClip::new(projection, camera, pose);
         let clip = Clip::new(projection, to_clip.unit_bits());
-        Self { to_clip, clip, whole: None }
+        Self { to_clip, clip }
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.
     #[inline(never)]
     pub(crate) fn sees(&mut self, projection: &Projection, bounds: &Bounds) -> bool {
-        if !self.clip.sees(&self.to_clip, bounds, projection) {
-            return false;
+        let center = self.clip.sees(&self.to_clip, bounds, projection);
+        if let Some(center) = center {
+            self.narrow(bounds, center);
         }
-        self.narrow(bounds);
-        true
+        center.is_some()
     }
 
     /// What clips triangles, if that may be needed.
     #[inline]
     pub(crate) fn clipping(&self) -> Option<(&ToClip, &Clip)> {
-        self.whole.is_none().then_some((&self.to_clip, &self.clip))
+        self.clip.whole.is_none().then_some((&self.to_clip, &self.clip))
     }
 
     /// Makes rows of a mesh's matrix narrow, unless the sphere reaches too far, or is so large that its vertices would be too coarse.
     #[inline(never)]
-    fn narrow(&mut self, bounds: &Bounds) {
-        let Self { to_clip, clip, .. } = self;
+    fn narrow(&mut self, bounds: &Bounds, center: [i32; 3]) {
+        let Self { to_clip, clip } = self;
         if clip.flat != 0 {
             return;
         }
-        let center = to_clip.place_all(bounds.center);
         let radius = bounds.radius.unsigned_abs();
         let reach = to_clip.reach(2, radius);
         let (nearest, farthest) = (center[2].saturating_sub(reach), center[2].saturating_add(reach));
@@ -133,13 +131,13 @@ impl Placing {
         for axis in 0..3 {
             to_clip.narrow(axis, if axis == 2 { bits_of_w } else { bits }, bounds);
         }
-        self.whole = Some(Shifts { depth: depth_shift as u8, position: shift as u8 });
+        clip.whole = Some(Shifts { depth: depth_shift as u8, position: shift as u8 });
     }
 
     /// Puts a vertex on the screen, its position and q alone; false, and `to` of no use, if it has to be clipped.
     #[inline(always)]
     pub(crate) fn place_bare(&self, vertex: &Vertex, to: &mut ScreenVertex) -> bool {
-        match self.whole {
+        match self.clip.whole {
             Some(shifts) => {
                 self.place_narrow(shifts, vertex, (&mut to.x, &mut to.y, &mut to.q));
                 true
@@ -151,7 +149,7 @@ impl Placing {
     /// As [`Placing::place_bare`].
     #[inline(always)]
     pub(crate) fn place(&self, vertex: &Vertex, to: (&mut I12F4, &mut I12F4, &mut U1F31)) -> bool {
-        match self.whole {
+        match self.clip.whole {
             Some(shifts) => {
                 self.place_narrow(shifts, vertex, to);
                 true
@@ -250,7 +248,7 @@ mod tests {
 
             let projection = camera.projection();
             let mut placing = Placing::new(projection, camera.placement(), &pose);
-            if !placing.sees(projection, mesh.bounds()) || placing.whole.is_none() {
+            if !placing.sees(projection, mesh.bounds()) || placing.clip.whole.is_none() {
                 return Ok(());
             }
             WHOLE.set(WHOLE.get() + 1);
