@@ -33,8 +33,12 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     let colors = surface.coloring.colors(sight.lights, pose);
     let light_face = surface.coloring.light_face(sight.lights);
     let assembler = Assembler { mesh, placing: &placing, coloring: &colors, cull, light_face };
-    let mut raster =
-        Raster::new((&surface.look, sight.fog.as_ref()), [projection.orthographic, false], window, band);
+    let mut raster = Raster::new(
+        (&surface.look, sight.fog.as_ref()),
+        [projection.orthographic, colors.are_gray(mesh.bounds().is_gray)],
+        window,
+        band,
+    );
     let mut cache = VertexCache::ZERO;
     cache.forget();
     loop {

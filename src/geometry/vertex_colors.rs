@@ -14,7 +14,7 @@ use crate::scene::{Lighting, Lights, Vertex};
 /// The functions that compute light, by reference: the linker drops lighting from programs that do not name it.
 #[derive(Debug)]
 pub(super) struct LightCode {
-    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose) -> Lighting<'p>,
+    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose, &mut bool) -> Lighting<'p>,
     shading: Shading,
 }
 
@@ -44,6 +44,7 @@ pub(super) struct Light<'p> {
     shading: &'static Shading,
     /// Whether light from behind counts as if it came from in front.
     two_sided: bool,
+    is_gray: bool,
 }
 
 impl<'p> Light<'p> {
@@ -54,18 +55,24 @@ impl<'p> Light<'p> {
         pose: &'p Pose,
         two_sided: bool,
     ) -> Self {
-        Self { lighting: (code.bring)(lights, pose), shading: &code.shading, two_sided }
+        let mut is_gray = false;
+        Self {
+            lighting: (code.bring)(lights, pose, &mut is_gray),
+            shading: &code.shading,
+            two_sided,
+            is_gray,
+        }
     }
 }
 
-/// Lights brought to a mesh in this pose.
-fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose) -> Lighting<'p> {
-    lights.in_mesh_space(pose)
+/// Lights brought to a mesh in this pose, and whether they are grey.
+fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, are_gray: &mut bool) -> Lighting<'p> {
+    lights.brought(pose, are_gray)
 }
 
 /// A colour times the light at its vertex. (White is the light itself.)
 fn at_vertex(light: &Light<'_>, color: &[u8; 3], vertex: &Vertex, to: &mut [U8F8; 3]) {
-    light.lighting.at_vertex(vertex, light.two_sided, to);
+    light.lighting.at_vertex(vertex, [light.two_sided, light.is_gray], to);
     if color[0] & color[1] & color[2] != 255 {
         for i in 0..3 {
             to[i] = over_255(u32::from(color[i]) * u32::from(to[i].to_bits()));
@@ -82,6 +89,12 @@ impl<'p> VertexColors<'p> {
     /// `base`, or the vertices' own colour if that is `None`, times the light on a mesh in this pose.
     pub(super) fn new(base: Option<[u8; 3]>, light: Option<Light<'p>>) -> Self {
         Self { base, light }
+    }
+
+    /// Whether all of them are grey, if those of the mesh's vertices are, or are not.
+    #[inline(never)]
+    pub(crate) fn are_gray(&self, is_mesh_gray: bool) -> bool {
+        self.base.map_or(is_mesh_gray, is_gray) && self.light.as_ref().is_none_or(|light| light.is_gray)
     }
 
     /// A vertex's colour; with flat shading without light, which is still to come [from its face](VertexColors::on_face).

@@ -81,10 +81,12 @@ impl Triangles<'_> {
     }
 }
 
-/// A sphere around all vertices.
+/// A sphere around all vertices, and what is known of their colours.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bounds {
     pub(crate) center: [I4F12; 3],
+    /// Whether all vertices are grey.
+    pub(crate) is_gray: bool,
     /// I20F12 bits, at most √3·8.
     pub(crate) radius: i32,
 }
@@ -220,9 +222,11 @@ impl Bounds {
         let center_x = (low_x as i32 + high_x as i32) / 2;
         let center_y = (low_y as i32 + high_y as i32) / 2;
         let center_z = (low_z as i32 + high_z as i32) / 2;
-        let mut most = 0;
+        let (mut most, mut is_gray) = (0, true);
         let mut i = 0;
         while i < count {
+            let [red, green, blue] = vertices[i].color;
+            is_gray &= red == green && green == blue;
             let [x, y, z] = vertices[i].position;
             // Up to 2¹⁶, and so 3 · 2³².
             let x = (x.to_bits() as i32 - center_x) as i64;
@@ -237,7 +241,7 @@ impl Bounds {
             I4F12::from_bits(center_y as i16),
             I4F12::from_bits(center_z as i16),
         ];
-        Self { center, radius: most.isqrt() as i32 + 1 }
+        Self { center, is_gray, radius: most.isqrt() as i32 + 1 }
     }
 }
 
