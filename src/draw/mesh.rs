@@ -39,7 +39,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
         window,
         band,
     );
-    let mut cache = VertexCache::ZERO;
+    let mut cache = VertexCache::new(mesh);
     cache.forget();
     loop {
         while let Some(triangle) = assembler.next(&mut cache, stats) {

@@ -16,7 +16,7 @@ use super::stats::Count;
 use super::vertex_colors::{VertexColors, dim};
 use super::whole::Placing;
 use crate::num::I16F16;
-use crate::scene::{Mesh, Vertex};
+use crate::scene::{Mesh, Triangles, Vertex};
 
 /// How many vertices the cache holds, the newest taking the place of the oldest. As many as a clipped triangle may have corners,
 /// since clipping makes its polygon in the cache's memory.
@@ -29,7 +29,7 @@ const MISSING: I16F16 = I16F16::MIN;
 /// The vertices of a mesh that were transformed last, and how far [`Assembler::next`] has come. The fields are in the order
 /// in which Armv6-M reaches them with the fewest registers.
 #[repr(C)]
-pub(crate) struct VertexCache {
+pub(crate) struct VertexCache<'m> {
     /// The index, in the mesh, of the vertex in each slot.
     owners: [u16; CACHED],
     /// The slot that was filled last.
@@ -39,25 +39,28 @@ pub(crate) struct VertexCache {
     pieces: u8,
     /// How many corners the triangle that was cut last has, if it is folded and is to be drawn.
     folded: u8,
-    /// How many of the mesh's triangles were looked at.
-    triangles: usize,
+    /// The mesh's triangles that were not looked at yet.
+    left: Triangles<'m>,
     /// For each index modulo [`HINTS`] the slot of the vertex that was placed last. A vertex whose hint another one took is not
     /// found: it is transformed again, and is then in the cache twice.
     hints: [u8; HINTS],
     vertices: [ScreenVertex; CACHED],
 }
 
-impl VertexCache {
+impl<'m> VertexCache<'m> {
     /// For a new mesh. Before use it has to [`forget`](Self::forget): here, vertex 0 counts as cached.
-    pub(crate) const ZERO: Self = Self {
-        owners: [0; CACHED],
-        newest: 0,
-        pieces: 0,
-        folded: 0,
-        triangles: 0,
-        hints: [0; HINTS],
-        vertices: [ScreenVertex::ZERO; CACHED],
-    };
+    #[inline]
+    pub(crate) fn new(mesh: &Mesh<'m>) -> Self {
+        Self {
+            owners: [0; CACHED],
+            newest: 0,
+            pieces: 0,
+            folded: 0,
+            left: mesh.indices(),
+            hints: [0; HINTS],
+            vertices: [ScreenVertex::ZERO; CACHED],
+        }
+    }
 
     /// Empties the cache. Slot 0 counts as vertex 1 then and all others as vertex 0, while the hints of these two lead to
     /// slots 0 and 1. So neither they nor any other vertex is found.
@@ -104,7 +107,7 @@ fn in_cache(slot: usize) -> Option<usize> {
 }
 
 /// The type of [`light_face`].
-pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache, usize);
+pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache<'_>, usize);
 
 /// The stages before set-up, for one mesh. Its functions are not inlined, so that their stack frames are gone while pixels are
 /// drawn.
@@ -125,15 +128,14 @@ impl Assembler<'_> {
     #[inline(never)]
     pub(crate) fn next<'c>(
         &self,
-        cache: &'c mut VertexCache,
+        cache: &'c mut VertexCache<'_>,
         stats: &mut impl Count,
     ) -> Option<Oriented<'c>> {
         if cache.pieces > 0 && self.find_piece(cache, stats) {
             return self.piece(cache);
         }
         loop {
-            let indices = self.mesh.triangle(cache.triangles)?;
-            cache.triangles += 1;
+            let indices = cache.left.next()?;
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
                 self.cut(cache, stats);
@@ -168,7 +170,7 @@ impl Assembler<'_> {
     fn place(
         &self,
         [a, b, c]: [u16; 3],
-        cache: &mut VertexCache,
+        cache: &mut VertexCache<'_>,
         stats: &mut impl Count,
     ) -> Option<[usize; 3]> {
         // A vertex that is found needs no clip test: where one lies outside, the cache is emptied.
@@ -191,7 +193,13 @@ impl Assembler<'_> {
     /// beyond a plane or outside the guard band. Then the triangle has to be clipped, and that has to empty the cache, in which
     /// the slot bears this vertex's index already.
     #[inline(never)]
-    fn place_vertex(&self, index: u16, used: u32, cache: &mut VertexCache, stats: &mut impl Count) -> usize {
+    fn place_vertex(
+        &self,
+        index: u16,
+        used: u32,
+        cache: &mut VertexCache<'_>,
+        stats: &mut impl Count,
+    ) -> usize {
         stats.count(|stats| &mut stats.transformed);
         let slot = cache.give(index, used);
         let to = &mut cache.vertices[slot];
@@ -207,19 +215,19 @@ impl Assembler<'_> {
     }
 
     /// The indices of the triangle last looked at.
-    fn last(&self, cache: &VertexCache) -> [u16; 3] {
-        self.mesh.triangle(cache.triangles - 1).unwrap_or_default()
+    fn last(&self, cache: &VertexCache<'_>) -> [u16; 3] {
+        self.mesh.triangle(self.mesh.triangle_count() - cache.left.len() - 1).unwrap_or_default()
     }
 
     /// Its vertices in the mesh.
-    fn corners(&self, cache: &VertexCache) -> [&Vertex; 3] {
+    fn corners(&self, cache: &VertexCache<'_>) -> [&Vertex; 3] {
         self.last(cache).map(|index| self.mesh.vertex(index))
     }
 
     /// Clips the triangle last looked at, to a polygon in the cache's memory.
     #[cold]
     #[inline(never)]
-    fn cut(&self, cache: &mut VertexCache, stats: &mut impl Count) {
+    fn cut(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         let corners = self.corners(cache);
@@ -240,7 +248,7 @@ impl Assembler<'_> {
     /// Goes on to the next piece of the clipped triangle that is not culled. False if there is none.
     #[cold]
     #[inline(never)]
-    fn find_piece(&self, cache: &mut VertexCache, stats: &mut impl Count) -> bool {
+    fn find_piece(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) -> bool {
         while cache.pieces > 0 {
             cache.pieces -= 1;
             if self.piece(cache).is_some() {
@@ -254,7 +262,7 @@ impl Assembler<'_> {
     /// The current piece of the clipped triangle: its polygon is a fan around the first vertex. `None` if the piece is culled.
     #[cold]
     #[inline(never)]
-    fn piece<'c>(&self, cache: &'c VertexCache) -> Option<Oriented<'c>> {
+    fn piece<'c>(&self, cache: &'c VertexCache<'_>) -> Option<Oriented<'c>> {
         Oriented::new(piece(&cache.vertices, cache.pieces.into())?, self.cull)
     }
 }
@@ -262,7 +270,7 @@ impl Assembler<'_> {
 /// Multiplies the colours of the triangle last looked at by the light on its face. `polygon_corners` is 0 if it was not
 /// clipped. Then its vertices in the cache get their attributes anew first, since they may have the light of another
 /// triangle. If it was clipped, the corners of its polygon are the first so many vertices.
-pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache, polygon_corners: usize) {
+pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache<'_>, polygon_corners: usize) {
     let indices = assembler.last(cache);
     let Some(light) = assembler.coloring.on_face(assembler.corners(cache)) else {
         return;

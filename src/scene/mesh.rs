@@ -34,9 +34,9 @@ pub struct Mesh<'a> {
     bounds: Bounds,
 }
 
-/// Three indices into the vertices for each triangle.
+/// Three indices into the vertices for each triangle, from the first on.
 #[derive(Clone, Copy, Debug)]
-enum Triangles<'a> {
+pub(crate) enum Triangles<'a> {
     U8(&'a [[u8; 3]]),
     U16(&'a [[u16; 3]]),
 }
@@ -80,6 +80,34 @@ impl Triangles<'_> {
         None
     }
 }
+
+impl Iterator for Triangles<'_> {
+    type Item = [u16; 3];
+
+    #[inline]
+    fn next(&mut self) -> Option<[u16; 3]> {
+        match self {
+            Self::U8(triangles) => {
+                let (first, left) = triangles.split_first()?;
+                *triangles = left;
+                Some(first.map(u16::from))
+            }
+            Self::U16(triangles) => {
+                let (first, left) = triangles.split_first()?;
+                *triangles = left;
+                Some(*first)
+            }
+        }
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let len = Self::len(self);
+        (len, Some(len))
+    }
+}
+
+impl ExactSizeIterator for Triangles<'_> {}
 
 /// A sphere around all vertices, and what is known of their colours.
 #[derive(Clone, Copy, Debug)]
@@ -161,8 +189,12 @@ impl<'a> Mesh<'a> {
     /// The triangles, three indices into [`Mesh::vertices`] each.
     #[must_use]
     pub fn triangles(&self) -> impl ExactSizeIterator<Item = [u16; 3]> + use<'a> {
-        let triangles = self.triangles;
-        (0..triangles.len()).map(move |i| triangles.at(i))
+        self.triangles
+    }
+
+    /// The same, by the type's name.
+    pub(crate) const fn indices(&self) -> Triangles<'a> {
+        self.triangles
     }
 
     /// How many triangles it has.

@@ -16,7 +16,7 @@ pub use camera::Camera;
 pub use lens_error::LensError;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};
 pub use mask::{Mask, MaskError};
-pub(crate) use mesh::Bounds;
+pub(crate) use mesh::{Bounds, Triangles};
 pub use mesh::{Mesh, MeshError};
 pub use plane_error::PlaneError;
 pub(crate) use projection::{Projection, Viewport};
