@@ -159,10 +159,9 @@ impl ToClip {
         let focal = [focal, focal, 0];
         // At least 1.
         let shift = (fraction_bits - 4 - unit_bits).min(31);
-        let rows = [Row { elements: [0; 3], translation: 0 }; 3];
-        let mut to = Self { rows, rests: [[0; 4]; 3], unit_bits };
+        let mut rows = [Row { elements: [0; 3], translation: 0 }; 3];
         for ((row, focal), (matrix, translation)) in
-            to.rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
+            rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
         {
             for (to, element) in row.elements.iter_mut().zip(matrix) {
                 // 30 bits; then 15 fraction bits.
@@ -174,13 +173,14 @@ impl ToClip {
         // The near plane may be nearer than that, in 1/65536.
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
         let is_fine = least == i32::MAX || is_near;
+        let mut rests = [[0; 4]; 3];
         if is_fine {
             for row in 0..3 {
                 let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
-                set_rests(&mut to.rests[row], &to.rows[row], matrix, translation, focal[row], unit_bits);
+                set_rests(&mut rests[row], &rows[row], matrix, translation, focal[row], unit_bits);
             }
         }
-        to
+        Self { rows, rests, unit_bits }
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.
@@ -365,7 +365,10 @@ mod tests {
     fn roots_are_never_too_small_nor_more_than_a_hundredth_too_large() {
         for square in (1..1 << 30).step_by(997).chain([1 << 26, (1 << 28) - 1, 1 << 28, (1 << 30) - 1]) {
             let (exact, root) = (f64::from(square).sqrt(), f64::from(root_or_more(square)));
-            assert!(root >= exact && (root <= exact * 1.0101 || square < 1 << 26 && root < 8300.0), "{root} of {exact}²");
+            assert!(
+                root >= exact && (root <= exact * 1.0101 || square < 1 << 26 && root < 8300.0),
+                "{root} of {exact}²"
+            );
         }
     }
 }
