@@ -122,10 +122,10 @@ impl Placing {
         // 2^(zeros − 62): (1/A + 1/B) · 2³⁸ has 14 bits. Times error without √¾ it is to be below 2³⁴ · √4/3.
         let error = (radius + 1) * distance;
         let per_bit = 256 + (inverse >> (24 - zeros));
-        // 15 bits of q, at most 2¹³. With (R + 1)/B it is to be below 2⁻¹⁹.
+        // 15 bits of q, at most 2¹³. Times (R + 1)/B it is to be below 2⁻¹⁹ · √4/3.
         let q = (most(clip.depth_mantissa, depth_shift) >> 17) + 1;
         let is_coarse = error >= 1 << 26 || (error >> 8) * per_bit > (1 << 26) / 13 * 15;
-        if is_coarse || (radius + 1) * q > 1 << (27 - zeros) {
+        if is_coarse || (((radius + 1) * q) >> 13) * (inverse >> 17) > ((1 << 28) / 13 * 15) >> zeros {
             return;
         }
         for axis in 0..3 {
