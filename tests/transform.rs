@@ -547,7 +547,8 @@ fn a_vertex_is_transformed_about_as_often_as_neighbours_are_apart() {
         let per_vertex = f64::from(stats.transformed) / mesh.vertices().len() as f64;
         let per_triangle = f64::from(stats.transformed) / triangles as f64;
         println!("{name}: {per_vertex:.2} transforms a vertex, {per_triangle:.2} a triangle");
-        assert!(per_vertex >= 1.0 && per_triangle < 3.0, "{stats:?}");
+        // Strips of four squares take five vertices for eight triangles, and one row more at their beginnings.
+        assert!(per_vertex >= 1.0 && per_triangle < 0.75, "{stats:?}");
     }
 }
 

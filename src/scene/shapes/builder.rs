@@ -39,8 +39,8 @@ impl<const V: usize, const T: usize> Builder<V, T> {
 
     /// Two triangles, of a square whose corners run counter-clockwise.
     pub(super) const fn square(&mut self, a: usize, b: usize, c: usize, d: usize) {
-        self.triangle(a, b, c);
-        self.triangle(a, c, d);
+        self.triangle(d, a, c);
+        self.triangle(c, a, b);
     }
 
     /// The squares between rows of `columns` + 1 vertices, [`in_strips`], that begin at vertex `first`.
@@ -61,16 +61,18 @@ impl<const V: usize, const T: usize> Builder<V, T> {
     }
 }
 
-/// Column and row of the `i`-th square, in strips of three columns from top to bottom, so that the draw call's cache of 9 vertices
-/// still has a square's upper corners from the row above: two vertices are transformed for three triangles, instead of one for
-/// each when whole rows are drawn.
+/// Column and row of the `i`-th square, in strips of four columns from top to bottom, from right to left in each row.
+///
+/// With the order of corners in [`Builder::square`] the draw call's cache of 9 vertices still has a square's corners from the row
+/// before: five vertices are transformed for eight triangles, instead of one for each when whole rows are drawn. (Wider strips take
+/// a larger cache; from left to right, or with the triangles the other way round, strips of three columns are the widest.)
 pub(super) const fn in_strips(i: usize, columns: usize, rows: usize) -> (usize, usize) {
-    const WIDTH: usize = 3;
+    const WIDTH: usize = 4;
     let strip = i / (WIDTH * rows);
     let left = strip * WIDTH;
     let width = if columns - left < WIDTH { columns - left } else { WIDTH };
     let i = i - left * rows;
-    (left + i % width, i / width)
+    (left + width - 1 - i % width, i / width)
 }
 
 /// A length that was given, if it is one.

@@ -14,7 +14,7 @@
 //!          b                       south
 //! ```
 
-use super::builder::{Builder, length};
+use super::builder::{Builder, in_strips, length};
 use super::round::{scaled, sin_cos};
 use super::shape::{Counts, Shape};
 use crate::num::I12F4;
@@ -33,21 +33,18 @@ pub const fn icosphere<const V: usize, const T: usize>(radius: f32, frequency: u
     let mut diamond = 0;
     while diamond < 10 {
         let corners = corners(diamond);
-        let mut i = 0;
-        while i < frequency {
-            let mut j = 0;
-            while j < frequency {
-                let normal = point(&corners, i, j, frequency);
-                shape.vertex(scaled(normal, radius), normal, [I12F4::ZERO; 2]);
-                shape.square(
-                    vertex(diamond, i, j, frequency),
-                    vertex(diamond, i + 1, j, frequency),
-                    vertex(diamond, i + 1, j + 1, frequency),
-                    vertex(diamond, i, j + 1, frequency),
-                );
-                j += 1;
-            }
-            i += 1;
+        let mut n = 0;
+        while n < frequency * frequency {
+            let normal = point(&corners, n / frequency, n % frequency, frequency);
+            shape.vertex(scaled(normal, radius), normal, [I12F4::ZERO; 2]);
+            let (j, i) = in_strips(n, frequency, frequency);
+            shape.square(
+                vertex(diamond, i, j, frequency),
+                vertex(diamond, i + 1, j, frequency),
+                vertex(diamond, i + 1, j + 1, frequency),
+                vertex(diamond, i, j + 1, frequency),
+            );
+            n += 1;
         }
         diamond += 1;
     }
