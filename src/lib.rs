@@ -75,7 +75,7 @@
 //!
 //! - **transform** multiplies mesh positions by one matrix whose numbers share an exponent.
 //! - **clip** divides by w with one reciprocal. A triangle that crosses the near plane, or a guard band far outside the screen,
-//!   is cut there first.
+//!   is cut there first. The vertices of a mesh whose bounding sphere reaches neither need no test, and half the products.
 //! - **set-up** holds, for every attribute u, the integers q = near/w and (u − u₀)·q, which are linear on the screen where u
 //!   itself is not.
 //! - **rows** finds the first and the last covered pixel of each row exactly, from the edge functions of the triangle (signed

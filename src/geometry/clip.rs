@@ -18,7 +18,6 @@
 
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
-use super::whole::Shifts;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
@@ -41,7 +40,7 @@ pub(crate) struct Clip {
     pub(super) least: i32,
     /// Whether that is further than the near plane, so that clipping has to take all bits that it has.
     pub(super) is_fine: bool,
-    /// If the mesh is whole, how it is placed: see [`whole`](super::whole). Else, and until that is known, `None`.
+    /// If the mesh is whole, how it is placed. Else, and until that is known, `None`.
     pub(super) whole: Option<Shifts>,
     /// Both planes as the camera has them, for clipping.
     pub(super) planes: [I16F16; 2],
@@ -56,6 +55,15 @@ pub(crate) struct Clip {
     pub(super) center: [i32; 2],
     /// The fraction bits of clip coordinates if w does not divide, else 0.
     pub(super) flat: i32,
+}
+
+/// How far products with 1/w are shifted where a mesh is whole, for a w without leading zeros.
+#[derive(Clone, Copy)]
+pub(super) struct Shifts {
+    /// For q, less one bit.
+    pub(super) depth: u8,
+    /// For x and y.
+    pub(super) position: u8,
 }
 
 /// How many bits screen positions have behind the 1/16 px before they are rounded.
@@ -79,6 +87,20 @@ impl Inverse {
 }
 
 impl Clip {
+    /// Of no projection.
+    pub(super) const ZERO: Self = Self {
+        far: 0,
+        least: 0,
+        is_fine: false,
+        whole: None,
+        planes: [I16F16::ZERO; 2],
+        depth_mantissa: 0,
+        depth_zeros: 0,
+        scale: 0,
+        center: [0; 2],
+        flat: 0,
+    };
+
     #[inline(never)]
     pub(crate) fn new(projection: &Projection, unit_bits: i32) -> Self {
         // To clip units: up for the near plane, so that nothing that is drawn has a q above 1.

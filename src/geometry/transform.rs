@@ -134,9 +134,20 @@ pub(super) fn least_w(projection: &Projection, unit_bits: i32) -> i32 {
 }
 
 impl ToClip {
-    /// Once a mesh. What is done nine times is a function of its own, so that it is there once.
-    #[inline(never)]
+    /// Of no mesh.
+    pub(crate) const ZERO: Self =
+        Self { rows: [Row { elements: [0; 3], translation: 0 }; 3], rests: [[0; 4]; 3], unit_bits: 0 };
+
     pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
+        let mut to_clip = Self::ZERO;
+        to_clip.set(projection, camera, pose);
+        to_clip
+    }
+
+    /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied. What is done nine times is a function of its own, so
+    /// that it is there once.
+    #[inline(never)]
+    pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
         let mut exact = Exact { matrix: [[0; 3]; 3], translation: [0; 3], all: [0; 2] };
         for row in 0..3 {
             exact.set_row(row, camera, pose);
@@ -159,9 +170,8 @@ impl ToClip {
         let focal = [focal, focal, 0];
         // At least 1.
         let shift = (fraction_bits - 4 - unit_bits).min(31);
-        let mut rows = [Row { elements: [0; 3], translation: 0 }; 3];
         for ((row, focal), (matrix, translation)) in
-            rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
+            self.rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
         {
             for (to, element) in row.elements.iter_mut().zip(matrix) {
                 // 30 bits; then 15 fraction bits.
@@ -173,14 +183,13 @@ impl ToClip {
         // The near plane may be nearer than that, in 1/65536.
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
         let is_fine = least == i32::MAX || is_near;
-        let mut rests = [[0; 4]; 3];
         if is_fine {
             for row in 0..3 {
                 let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
-                set_rests(&mut rests[row], &rows[row], matrix, translation, focal[row], unit_bits);
+                set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal[row], unit_bits);
             }
         }
-        Self { rows, rests, unit_bits }
+        self.unit_bits = unit_bits;
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.

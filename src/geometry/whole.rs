@@ -24,7 +24,7 @@
 //! The sum is below 1/128. q is at most ¼, off by these (R + 1)/B of itself, which may be 1/8 step of a 16-bit depth, and by 2⁻¹⁹,
 //! another 1/32 step.
 
-use super::clip::{CUT_AT, Clip, FINER};
+use super::clip::{CUT_AT, Clip, FINER, Shifts};
 use super::screen::ScreenVertex;
 use super::transform::ToClip;
 use crate::math::Pose;
@@ -40,15 +40,6 @@ pub(crate) struct Placing {
     clip: Clip,
 }
 
-/// How far products with 1/w are shifted, for a w without leading zeros.
-#[derive(Clone, Copy)]
-pub(super) struct Shifts {
-    /// For q, less one bit.
-    depth: u8,
-    /// For x and y.
-    position: u8,
-}
-
 /// Most leading zeros of w: the farthest may be that power of two times as far as the nearest.
 const MOST_ZEROS: u32 = 6;
 /// The most fraction bits of clip units that a row gets: as many as its elements have.
@@ -60,9 +51,10 @@ impl Placing {
     /// Inlined, so that nothing is copied.
     #[inline(always)]
     pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        let to_clip = ToClip::new(projection, camera, pose);
-        let clip = Clip::new(projection, to_clip.unit_bits());
-        Self { to_clip, clip }
+        let mut placing = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
+        placing.to_clip.set(projection, camera, pose);
+        placing.clip = Clip::new(projection, placing.to_clip.unit_bits());
+        placing
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.
