@@ -184,9 +184,9 @@ impl ToClip {
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
         let is_fine = least == i32::MAX || is_near;
         if is_fine {
-            for row in 0..3 {
+            for (row, focal) in focal.into_iter().enumerate() {
                 let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
-                set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal[row], unit_bits);
+                set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal, unit_bits);
             }
         }
         self.unit_bits = unit_bits;
@@ -366,7 +366,6 @@ fn shortened(value: i64, dropped: i32, focal: i32) -> i32 {
 }
 
 #[cfg(test)]
-#[expect(clippy::float_arithmetic, reason = "the truth in f64")]
 mod tests {
     use super::*;
 
