@@ -61,7 +61,7 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M,
         let (mut w, w_step) = (curve.w, curve.w_step);
         for pixel in pixels {
             let t = inverse(w);
-            *pixel = C::place_modular(lines.map(|line| line.value(t))).word::<F>();
+            *pixel = C::word_modular::<F>(lines.map(|line| line.value(t)));
             w = w.wrapping_add(w_step);
             black_box(());
         }

@@ -4,21 +4,19 @@
 //! - Out: words.
 //! - Assumes: u and v are as for [`Texels`], and light as for [`Colors`](super::colors::Colors).
 //!
-//! With 1/w at every pixel a Cortex-M0+ takes passes, because it has few registers: texels first, then light on them
-//! in place. It looks 1/w up again, as texels took its place. On a Cortex-M4 one loop takes 30 cycles a pixel.
+//! Texels come first, by the loops of [`Texels`], and then light on them in place: on a Cortex-M0+, which has few registers,
+//! that takes 45 cycles a pixel where one loop takes 71, and on a Cortex-M4 27 where one loop takes 30. Of formats whose
+//! words do not [keep](PixelFormat::texel) a texel one loop makes both.
 
 use super::channels::{Channels, lit};
-use super::curve::{Curve, Linear};
-use super::fill::{Fill, FillRow, plus, some_of};
+use super::curve::{Curve, Linear, distance};
+use super::fill::{Fill, FillRow, each_chord, plus, some_of};
 use super::inverses::inverse;
-use super::packed::{
-    downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, turned,
-};
+use super::packed::{downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted};
 use super::row::Row;
-use super::texels::{Texels, packed_chord};
-use super::units::Units;
+use super::texels::Texels;
+use super::units::{Form, Units};
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::num::IS_ARMV6M;
 use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 use core::hint::black_box;
@@ -38,27 +36,15 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
         Self { texture, scale_log2, is_packed: texture.is_packable(scale_log2), channels: PhantomData }
     }
 
-    /// Packed coordinates, and light, along a straight line.
-    #[inline(never)]
-    fn run(&self, pixels: &mut [F::Word], [mut packed, step]: [u32; 2], [mut light, light_step]: [C; 2]) {
-        // A copy stays in registers.
-        let texture = *self.texture;
-        for pixel in pixels {
-            *pixel = lit::<F>(texture.fetch_packed(packed), light.rgb());
-            (packed, light) = (packed.wrapping_add(step), light.plus(light_step));
-            // Not unrolled: 1 KiB.
-            black_box(());
-        }
+    /// The texels alone.
+    #[inline]
+    fn texels(&self) -> Texels<'_, F> {
+        Texels::new(self.texture, self.scale_log2)
     }
 
-    /// As [`LitTexels::run`], with u and v in 32 bits each, of which the texture's are the upper ones.
+    /// Texels and light along a straight line. Of u and v the texture's bits are the upper ones of 32.
     #[inline(never)]
-    fn run_unpacked(
-        &self,
-        pixels: &mut [F::Word],
-        [at, step]: [[i32; 2]; 2],
-        [mut light, light_step]: [C; 2],
-    ) {
+    fn at_once(&self, pixels: &mut [F::Word], [at, step]: [[i32; 2]; 2], [mut light, light_step]: [C; 2]) {
         let [u_down, v_down] = downs(self.texture);
         let (texture, mut at) = (*self.texture, at);
         for pixel in pixels {
@@ -70,16 +56,56 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
         }
     }
 
-    /// Light on texels that are there already.
+    /// Light along a straight line, I16F16, on texels that are there already.
     #[inline(never)]
-    fn light(&self, pixels: &mut [F::Word], curve: &Curve) {
+    fn light_straight(pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
+        let lines = some_of::<M, _>(lines, 2);
+        let (mut at, step) = (lines.map(|line| line.at as i32), lines.map(|line| line.slope));
+        let packed_step = C::step(step);
+        if C::DROPPED == 0 {
+            return Self::light_on(pixels, C::place(at), packed_step);
+        }
+        for block in pixels.chunks_mut(1 << C::RUN_LOG2) {
+            Self::light_on(block, C::place(at), packed_step);
+            for (at, step) in at.iter_mut().zip(step) {
+                *at = at.wrapping_add(step << C::RUN_LOG2);
+            }
+        }
+    }
+
+    /// Light on texels, from packed channels on.
+    #[inline(always)]
+    fn light_on(pixels: &mut [F::Word], mut light: C, step: C) {
+        // Not unrolled, nor is any other loop here: no register would be left.
+        for pixel in pixels {
+            *pixel = lit::<F>(F::texel(*pixel), light.rgb());
+            light = light.plus(step);
+            black_box(());
+        }
+    }
+
+    /// Light with 1/w at every pixel, on texels that are there already.
+    #[inline(never)]
+    fn light_table(pixels: &mut [F::Word], curve: &Curve) {
         let lines = some_of::<M, _>(&curve.lines, 2);
         let (mut w, w_step) = (curve.w, curve.w_step);
         for pixel in pixels {
             let t = inverse(w);
-            let light = C::place_modular(lines.map(|line| line.value(t)));
-            *pixel = lit::<F>(F::texel(*pixel), light.rgb());
+            *pixel = lit::<F>(F::texel(*pixel), C::rgb_modular(lines.map(|line| line.value(t))));
             w = w.wrapping_add(w_step);
+            black_box(());
+        }
+    }
+
+    /// Light with n/w at every pixel, on texels that are there already.
+    #[inline(never)]
+    fn light_distances(pixels: &mut [F::Word], curve: &Curve) {
+        let lines = some_of::<M, _>(&curve.lines, 2);
+        let (mut w, mut n) = (curve.w, curve.n);
+        for pixel in pixels {
+            let t = distance(Form::Modular, w, n);
+            *pixel = lit::<F>(F::texel(*pixel), C::rgb_modular(lines.map(|line| line.value(t))));
+            (w, n) = (w.wrapping_add(curve.w_step), n.wrapping_add(curve.n_step));
             black_box(());
         }
     }
@@ -94,8 +120,8 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
         for pixel in pixels {
             let t = inverse(w);
             let index = (v.value(t) >> v_down) << a | u.value(t) >> u_down;
-            let light = C::place_modular(lines.map(|line| line.value(t)));
-            *pixel = lit::<F>(texels.get(index as usize).copied().unwrap_or_default(), light.rgb());
+            let texel = texels.get(index as usize).copied().unwrap_or_default();
+            *pixel = lit::<F>(texel, C::rgb_modular(lines.map(|line| line.value(t))));
             w = w.wrapping_add(w_step);
             black_box(());
         }
@@ -110,48 +136,48 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for LitTexels
 
     #[inline(never)]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
-        let [a, b] = self.texture.log2();
+        if F::KEEPS {
+            self.texels().straight(pixels, line);
+            return Self::light_straight(pixels, &line.lines);
+        }
         let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
-        let (mut u, mut v) = (u as i32, v as i32);
         let lights = some_of::<M, _>(&line.lines, 2);
         let (mut light, light_step) = (lights.map(|line| line.at as i32), lights.map(|line| line.slope));
-        let packed_light_step = C::step(light_step);
-        let log2 = if self.is_packed && self.texture.is_large() { 3 } else { C::RUN_LOG2 };
-        for block in pixels.chunks_mut(1 << log2) {
-            let lights = [C::place(light), packed_light_step];
-            if self.is_packed {
-                let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
-                self.run(block, [packed_from([u >> a, v >> b], u_step), step], lights);
-            } else {
-                let [a, b] = integer_bits(self.texture);
-                let up = |[u, v]: [i32; 2]| [u << (16 - a), v << (16 - b)];
-                self.run_unpacked(block, [up([u, v]), up([u_step, v_step])], lights);
-            }
-            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
-            for (light, step) in light.iter_mut().zip(light_step) {
-                *light = light.wrapping_add(step << log2);
-            }
+        let [a, b] = integer_bits(self.texture);
+        let up = |[u, v]: [i32; 2]| [u << (16 - a), v << (16 - b)];
+        let (mut at, step) = (up([u as i32, v as i32]), up([u_step, v_step]));
+        for block in pixels.chunks_mut(1 << C::RUN_LOG2) {
+            self.at_once(block, [at, step], [C::place(light), C::step(light_step)]);
+            at = plus(at, step.map(|step| step << C::RUN_LOG2));
+            light = plus(light, light_step.map(|step| step << C::RUN_LOG2));
         }
     }
 
     #[inline(never)]
     fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
-        if IS_ARMV6M && F::KEEPS {
-            Texels::<F>::new(self.texture, self.scale_log2).table(pixels, curve);
-            return self.light(pixels, curve);
+        if F::KEEPS {
+            self.texels().table(pixels, curve);
+            return Self::light_table(pixels, curve);
         }
         self.table_at_once(pixels, curve);
+    }
+
+    #[inline(never)]
+    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) -> bool {
+        if F::KEEPS {
+            let texels = self.texels();
+            if !texels.chords(pixels, curve) {
+                each_chord(pixels, curve, &texels);
+            }
+            Self::light_distances(pixels, curve);
+        }
+        F::KEEPS
     }
 
     fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
         let [u, v, ..] = lines;
         let lights = C::modular(some_of(lines, 2));
-        // Packed chords need more room at the ends of the range than large textures have.
-        if self.is_packed && !self.texture.is_large() {
-            self.run(pixels, packed_chord([u.at, v.at], [u.slope, v.slope]), lights);
-        } else {
-            self.run_unpacked(pixels, [[u.at as i32, v.at as i32], [u.slope, v.slope]], lights);
-        }
+        self.at_once(pixels, [[u.at as i32, v.at as i32], [u.slope, v.slope]], lights);
     }
 }
 
@@ -229,7 +255,7 @@ mod tests {
         let fill = LitTexels::<M, F, C>::new(texture, 0);
         let (mut passes, mut once) = (vec![1; count], vec![2; count]);
         Texels::<F>::new(texture, 0).table(&mut passes, curve);
-        fill.light(&mut passes, curve);
+        LitTexels::<M, F, C>::light_table(&mut passes, curve);
         fill.table_at_once(&mut once, curve);
         passes == once
     }

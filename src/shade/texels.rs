@@ -253,7 +253,7 @@ fn at_once<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(
 
 /// A chord from a place, in units of 32 bits, and its step; as a packed place and step, both rounded down.
 #[inline(always)]
-pub(super) fn packed_chord([u, v]: [u32; 2], [u_step, v_step]: [i32; 2]) -> [u32; 2] {
+fn packed_chord([u, v]: [u32; 2], [u_step, v_step]: [i32; 2]) -> [u32; 2] {
     const UPPER: u32 = 0xffff_0000;
     [v & UPPER | u >> 16, (v_step as u32 & UPPER).wrapping_add_signed(u_step >> 16)]
 }
