@@ -10,7 +10,6 @@
 //! With 8 fraction bits steps are cut towards zero. So after 16 pixels of a straight line a channel is off by at most 1/16 of
 //! 1/255, its unit. That is how long a line may be before it starts anew.
 
-use super::curve::Linear;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
 
@@ -40,12 +39,6 @@ pub(crate) trait Channels<const M: usize>: Copy {
         Self::pack(step.map(|step| shifted(step, Self::DROPPED)))
     }
 
-    /// The values at a pixel, from 8 integer and 24 fraction bits.
-    #[inline]
-    fn place_modular(channels: [u32; M]) -> Self {
-        Self::place(channels.map(|channel| (channel >> 8) as i32))
-    }
-
     /// Red, green and blue, 0 … 255, from 8 integer and 24 fraction bits.
     fn rgb_modular(channels: [u32; M]) -> [u32; 3];
 
@@ -53,13 +46,6 @@ pub(crate) trait Channels<const M: usize>: Copy {
     #[inline]
     fn word_modular<F: PixelFormat>(channels: [u32; M]) -> F::Word {
         color::<F>(Self::rgb_modular(channels))
-    }
-
-    /// Likewise, and the step.
-    #[inline]
-    fn modular(lines: [Linear; M]) -> [Self; 2] {
-        let step = Self::step(lines.map(|line| shifted(line.slope, 8)));
-        [Self::place_modular(lines.map(|line| line.at)), step]
     }
 
     /// Red, green and blue, 0 … 255.

@@ -14,6 +14,7 @@ mod fragment;
 mod inverses;
 mod kinds;
 mod layered;
+mod light;
 mod lit_texels;
 mod material;
 mod opaque;

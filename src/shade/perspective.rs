@@ -38,7 +38,7 @@
 //! at 1024×1024.
 
 use super::curve::{Curve, Linear};
-use super::fill::{Fill, each_chord};
+use super::fill::Fill;
 use super::inverses::ONE_LOG2;
 use super::units::{Form, Units};
 use crate::math::recip::looked_up;
@@ -132,14 +132,8 @@ impl<'a> Perspective<'a> {
         match (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32) {
             Way::Straight => fill.straight(pixels, &self.curve),
             Way::Table => fill.table(pixels, &self.curve),
-            Way::Chords => self.draw_chords(pixels, fill),
+            Way::Chords => fill.chords(pixels, &self.curve),
             Way::None => self.draw_parts(x, y, pixels, fill),
-        }
-    }
-
-    fn draw_chords<W>(&self, pixels: &mut [W], fill: &dyn Fill<W>) {
-        if !fill.chords(pixels, &self.curve) {
-            each_chord(pixels, &self.curve, fill);
         }
     }
 
@@ -167,7 +161,7 @@ impl<'a> Perspective<'a> {
             }
             match way {
                 Way::Table => fill.table(run, &self.curve),
-                Way::Chords => self.draw_chords(run, fill),
+                Way::Chords => fill.chords(run, &self.curve),
                 _ => fill.straight(run, &self.curve),
             }
             (count, pixels) = (rest.len(), rest);

@@ -23,9 +23,10 @@
 //! With 1/w at every pixel u and v have a word each. On a Cortex-M0+, which has few registers, a first pass leaves 1/w in the
 //! pixels, and a second makes texels of them: 31 cycles a pixel, where one loop takes 35. On a Cortex-M4 one loop takes 15.
 
-use super::curve::{CHORD, Chords, Curve, Linear, MOST_IN_CHORDS};
-use super::fill::{Fill, FillRow, plus, slope_of_chord};
-use super::inverses::{inverse, leave};
+use super::curve::{CHORD, Chords, Curve, Linear, MOST_IN_CHORDS, Ts};
+use super::fill::{Fill, FillRow, plus};
+use super::inverses::leave;
+use super::light::FillTexels;
 use super::packed::{
     downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, sized, turned,
 };
@@ -33,7 +34,6 @@ use super::row::Row;
 use super::units::Units;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::IS_ARMV6M;
-use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -139,7 +139,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     #[inline(never)]
     fn nodes<'n>(&self, count: usize, curve: &Curve, nodes: &'n mut Nodes) -> &'n [[u32; 2]] {
         let [u, v, ..] = curve.lines;
-        let steps = [u, v].map(|line| slope_of_chord(line.slope));
+        let steps = [u, v].map(|line| shifted(line.slope, 6) as u32);
         let mut chords = Chords::new(curve);
         let Some((last, eights)) =
             nodes.get_mut(..count.div_ceil(CHORD as usize)).and_then(<[_]>::split_last_mut)
@@ -188,14 +188,14 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     ) {
         let shift = 32 - A;
         let [u, v, ..] = curve.lines;
-        self.table_of(pixels, curve, [u, v], move |u, v| {
+        Self::each::<false>(pixels, curve, [u, v], move |u, v| {
             texels[(v >> shift) as usize & (SIDE - 1)][(u >> shift) as usize & (SIDE - 1)]
         });
     }
 
+    /// With t at every pixel: 1/w, or with `CHORDS` n/w.
     #[inline(always)]
-    fn table_of(
-        &self,
+    fn each<const CHORDS: bool>(
         pixels: &mut [F::Word],
         curve: &Curve,
         [u, v]: [Linear; 2],
@@ -203,9 +203,9 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     ) {
         let word = |t: u32| F::rgb565(texel(u.value(t), v.value(t)));
         if IS_ARMV6M && F::KEEPS {
-            in_passes::<F>(pixels, curve, word);
+            in_passes::<CHORDS, F>(pixels, curve, word);
         } else {
-            at_once::<F>(pixels, curve, word);
+            at_once::<CHORDS, F>(pixels, curve, word);
         }
     }
 
@@ -214,21 +214,34 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         self.table_sized::<5, 32>(pixels, texels, curve);
     }
 
+    /// Likewise, of any size.
     #[inline(never)]
-    fn table_any(&self, pixels: &mut [F::Word], curve: &Curve) {
+    fn each_any<const CHORDS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
         let ([a, _], texels) = (self.texture.log2(), self.texture.texels());
         let [u_down, v_down] = downs(self.texture);
-        self.table_of(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
+        Self::each::<CHORDS>(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
             let index = (v >> v_down) << a | u >> u_down;
             texels.get(index as usize).copied().unwrap_or_default()
         });
     }
 }
 
-/// Words made of 1/w, which a first pass leaves in the pixels: 8.3 cycles a pixel on a Cortex-M0+, and 22.9 for the second.
+/// Words made of t, which a first pass leaves in the pixels: 1/w takes 8.3 cycles a pixel on a Cortex-M0+, and the second pass 22.9.
 #[inline(always)]
-fn in_passes<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(u32) -> F::Word) {
-    leave::<F>(pixels, curve.w, curve.w_step);
+fn in_passes<const CHORDS: bool, F: PixelFormat>(
+    pixels: &mut [F::Word],
+    curve: &Curve,
+    word: impl Fn(u32) -> F::Word,
+) {
+    if CHORDS {
+        let mut ts = Ts::<true>::new(curve);
+        for pixel in &mut *pixels {
+            *pixel = F::keep(ts.next() as u16);
+            black_box(());
+        }
+    } else {
+        leave::<F>(pixels, curve.w, curve.w_step);
+    }
     let (fours, rest) = pixels.as_chunks_mut::<4>();
     for four in fours {
         four.iter_mut().for_each(|pixel| *pixel = word(F::kept(*pixel).into()));
@@ -240,13 +253,16 @@ fn in_passes<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl F
     }
 }
 
-/// The same in one loop: 15 cycles a pixel on a Cortex-M4, where it is not unrolled.
+/// The same in one loop: with 1/w 15 cycles a pixel on a Cortex-M4, where it is not unrolled.
 #[inline(always)]
-fn at_once<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(u32) -> F::Word) {
-    let (mut w, w_step) = (curve.w, curve.w_step);
+fn at_once<const CHORDS: bool, F: PixelFormat>(
+    pixels: &mut [F::Word],
+    curve: &Curve,
+    word: impl Fn(u32) -> F::Word,
+) {
+    let mut ts = Ts::<CHORDS>::new(curve);
     for pixel in pixels {
-        *pixel = word(inverse(w));
-        w = w.wrapping_add(w_step);
+        *pixel = word(ts.next());
         black_box(());
     }
 }
@@ -256,6 +272,19 @@ fn at_once<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(
 fn packed_chord([u, v]: [u32; 2], [u_step, v_step]: [i32; 2]) -> [u32; 2] {
     const UPPER: u32 = 0xffff_0000;
     [v & UPPER | u >> 16, (v_step as u32 & UPPER).wrapping_add_signed(u_step >> 16)]
+}
+
+impl<F: PixelFormat> FillTexels<F> for Texels<'_, F> {
+    #[inline]
+    fn integer_bits(&self) -> [u32; 2] {
+        integer_bits(self.texture)
+    }
+
+    #[inline]
+    fn texel(&self, [u, v]: [u32; 2]) -> u16 {
+        let [u_down, v_down] = downs(self.texture);
+        self.texture.fetch_repeat((u >> u_down) as i32, (v >> v_down) as i32)
+    }
 }
 
 impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
@@ -283,14 +312,15 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
         match self.square {
             Square::Of64(texels) => self.table_sized::<6, 64>(pixels, texels, curve),
             Square::Of32(texels) => self.table_32(pixels, texels, curve),
-            Square::Any => self.table_any(pixels, curve),
+            Square::Any => self.each_any::<false>(pixels, curve),
         }
     }
 
     #[inline(never)]
-    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) -> bool {
+    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
+        // Packed chords need more room at the ends of the range than large textures have.
         if !self.is_packed || self.texture.is_large() {
-            return false;
+            return self.each_any::<true>(pixels, curve);
         }
         let mut nodes = Nodes::default();
         let nodes = self.nodes(pixels.len(), curve, &mut nodes);
@@ -303,19 +333,6 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
             for (eight, &[packed, step]) in pixels.chunks_mut(CHORD as usize).zip(nodes) {
                 self.line_checked(eight, packed, step);
             }
-        }
-        true
-    }
-
-    fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
-        let [u, v, ..] = lines;
-        let [u_down, v_down] = downs(self.texture);
-        let (texture, mut at) = (*self.texture, [u.at, v.at]);
-        for pixel in pixels {
-            let [u_at, v_at] = [at[0] >> u_down, at[1] >> v_down];
-            *pixel = F::rgb565(texture.fetch_repeat(u_at as i32, v_at as i32));
-            at = [at[0].wrapping_add_signed(u.slope), at[1].wrapping_add_signed(v.slope)];
-            black_box(());
         }
     }
 }
@@ -383,8 +400,8 @@ pub(super) mod tests {
             F::rgb565(texture.fetch_repeat((u.value(t) >> u_down) as i32, (v.value(t) >> v_down) as i32))
         };
         let (mut passes, mut once) = (vec![1; count], vec![2; count]);
-        in_passes::<F>(&mut passes, curve, word);
-        at_once::<F>(&mut once, curve, word);
+        in_passes::<false, F>(&mut passes, curve, word);
+        at_once::<false, F>(&mut once, curve, word);
         [passes, once]
     }
 
