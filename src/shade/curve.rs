@@ -46,6 +46,14 @@ impl Linear {
     }
 }
 
+impl Linear {
+    /// Turned round: all bits of its values inverted.
+    #[inline(always)]
+    pub(crate) fn turned(self) -> Self {
+        Self { at: !self.at, slope: self.slope.wrapping_neg() }
+    }
+}
+
 impl Curve {
     /// Makes w 1 at the near end, which is the right one if q rises.
     #[inline(always)]

@@ -34,6 +34,7 @@ use super::row::Row;
 use super::units::Units;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::IS_ARMV6M;
+use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -137,7 +138,12 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// Packs start and step of each chord.
     #[inline(never)]
-    fn nodes<'n>(&self, count: usize, curve: &Curve, nodes: &'n mut Nodes) -> &'n [[u32; 2]] {
+    fn nodes<'n, const CUTS: bool>(
+        &self,
+        count: usize,
+        curve: &Curve,
+        nodes: &'n mut Nodes,
+    ) -> &'n [[u32; 2]] {
         let [u, v, ..] = curve.lines;
         let steps = [u, v].map(|line| shifted(line.slope, 6) as u32);
         let mut chords = Chords::new(curve);
@@ -147,7 +153,9 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
             return &[];
         };
         let node = |(t, rise): (u32, u32)| {
-            packed_chord([u, v].map(|line| line.value(t)), steps.map(|step| rise.wrapping_mul(step) as i32))
+            let steps = steps.map(|step| rise.wrapping_mul(step) as i32);
+            let steps = if CUTS { steps.map(|step| step + (step >> 31 & 0xffff)) } else { steps };
+            packed_chord([u, v].map(|line| line.value(t)), steps)
         };
         for eight in eights {
             *eight = node(chords.next());
@@ -155,6 +163,39 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         }
         *last = node(chords.last((count - 1) as u32 & (CHORD - 1)));
         nodes
+    }
+
+    /// Along chords. `CUTS`: steps are cut towards zero, for lines that must not leave the texture.
+    #[inline(always)]
+    pub(super) fn chords_of<const CUTS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
+        // Packed chords need more room at the ends of the range than large textures have.
+        if !self.is_packed || self.texture.is_large() {
+            return self.each_any::<true>(pixels, curve);
+        }
+        let mut nodes = Nodes::default();
+        let nodes = self.nodes::<CUTS>(pixels.len(), curve, &mut nodes);
+        self.chords_from(pixels, nodes);
+    }
+
+    #[inline(never)]
+    fn chords_from(&self, pixels: &mut [F::Word], nodes: &[[u32; 2]]) {
+        let texels = self.texture.texels();
+        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
+            self.chords_sized(pixels, texels, nodes);
+        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
+            self.chords_sized(pixels, texels, nodes);
+        } else {
+            for (eight, &[packed, step]) in pixels.chunks_mut(CHORD as usize).zip(nodes) {
+                self.line_checked(eight, packed, step);
+            }
+        }
+    }
+
+    /// Takes away from a straight line's v what is lent to it where u falls, for u that does not repeat.
+    pub(super) fn lend_nothing(&self, [u, v, ..]: &mut [Linear; ATTRIBUTES]) {
+        if self.is_packed && u.slope < 0 {
+            v.at = v.at.wrapping_sub(1 << self.texture.log2()[1]);
+        }
     }
 
     #[inline]
@@ -195,7 +236,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// With t at every pixel: 1/w, or with `CHORDS` n/w.
     #[inline(always)]
-    fn each<const CHORDS: bool>(
+    pub(super) fn each<const CHORDS: bool>(
         pixels: &mut [F::Word],
         curve: &Curve,
         [u, v]: [Linear; 2],
@@ -216,7 +257,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// Likewise, of any size.
     #[inline(never)]
-    fn each_any<const CHORDS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
+    pub(super) fn each_any<const CHORDS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
         let ([a, _], texels) = (self.texture.log2(), self.texture.texels());
         let [u_down, v_down] = downs(self.texture);
         Self::each::<CHORDS>(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
@@ -318,22 +359,7 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     #[inline(never)]
     fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
-        // Packed chords need more room at the ends of the range than large textures have.
-        if !self.is_packed || self.texture.is_large() {
-            return self.each_any::<true>(pixels, curve);
-        }
-        let mut nodes = Nodes::default();
-        let nodes = self.nodes(pixels.len(), curve, &mut nodes);
-        let texels = self.texture.texels();
-        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
-        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
-        } else {
-            for (eight, &[packed, step]) in pixels.chunks_mut(CHORD as usize).zip(nodes) {
-                self.line_checked(eight, packed, step);
-            }
-        }
+        self.chords_of::<false>(pixels, curve);
     }
 }
 

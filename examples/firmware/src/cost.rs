@@ -7,7 +7,8 @@ use fixel::material::Kind;
 use fixel::num::{I12F4, I16F16};
 use fixel::{Affine, DepthFormat, Exact, Fog, Mask, Quality, QuarterPixel, Surface, prelude::*};
 
-/// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
+/// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light,
+/// textured (mirrored), textured (clamped) × light.
 /// Sides turned to where `cull` says are left out.
 fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'static, Rgb565, D> {
     fn of<D: DepthFormat, Q: Quality>(
@@ -22,7 +23,9 @@ fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'stat
         2 => of::<D, Q>(Material::textured(&WALL), cull),
         3 => of::<D, Q>(Material::clamped(&WALL), cull),
         4 => of::<D, Q>(Material::textured(&WALL).lit(), cull),
-        _ => of::<D, Q>(Material::gouraud().lit(), cull),
+        5 => of::<D, Q>(Material::gouraud().lit(), cull),
+        6 => of::<D, Q>(Material::mirrored(&WALL), cull),
+        _ => of::<D, Q>(Material::clamped(&WALL).lit(), cull),
     }
 }
 
