@@ -23,7 +23,7 @@
 //! With 1/w at every pixel u and v have a word each. On a Cortex-M0+, which has few registers, a first pass leaves 1/w in the
 //! pixels, and a second makes texels of them: 31 cycles a pixel, where one loop takes 35. On a Cortex-M4 one loop takes 15.
 
-use super::curve::{CHORD, Chords, Curve, Linear, MOST_IN_CHORDS, Ts};
+use super::curve::{CHORD, Chords, Curve, Linear, Ts};
 use super::fill::{Fill, FillRow, plus};
 use super::inverses::leave;
 use super::light::FillTexels;
@@ -56,7 +56,39 @@ enum Square<'a> {
 }
 
 /// Chords of packed coordinates: where each begins, and its step.
-type Nodes = [[u32; 2]; MOST_IN_CHORDS as usize / CHORD as usize + 1];
+struct Nodes<const CUTS: bool> {
+    chords: Chords,
+    lines: [Linear; 2],
+    steps: [u32; 2],
+}
+
+impl<const CUTS: bool> Nodes<CUTS> {
+    #[inline(always)]
+    fn new(curve: &Curve) -> Self {
+        let [u, v, ..] = curve.lines;
+        let steps = [u, v].map(|line| shifted(line.slope, 6) as u32);
+        Self { chords: Chords::new(curve), lines: [u, v], steps }
+    }
+
+    #[inline(always)]
+    fn node(&self, (t, rise): (u32, u32)) -> [u32; 2] {
+        let steps = self.steps.map(|step| rise.wrapping_mul(step) as i32);
+        let steps = if CUTS { steps.map(|step| step + (step >> 31 & 0xffff)) } else { steps };
+        packed_chord(self.lines.map(|line| line.value(t)), steps)
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> [u32; 2] {
+        let chord = self.chords.next();
+        self.node(chord)
+    }
+
+    #[inline(always)]
+    fn last(&mut self, steps: u32) -> [u32; 2] {
+        let chord = self.chords.last(steps);
+        self.node(chord)
+    }
+}
 
 impl<'a, F: PixelFormat> Texels<'a, F> {
     #[inline]
@@ -136,35 +168,6 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         }
     }
 
-    /// Packs start and step of each chord.
-    #[inline(never)]
-    fn nodes<'n, const CUTS: bool>(
-        &self,
-        count: usize,
-        curve: &Curve,
-        nodes: &'n mut Nodes,
-    ) -> &'n [[u32; 2]] {
-        let [u, v, ..] = curve.lines;
-        let steps = [u, v].map(|line| shifted(line.slope, 6) as u32);
-        let mut chords = Chords::new(curve);
-        let Some((last, eights)) =
-            nodes.get_mut(..count.div_ceil(CHORD as usize)).and_then(<[_]>::split_last_mut)
-        else {
-            return &[];
-        };
-        let node = |(t, rise): (u32, u32)| {
-            let steps = steps.map(|step| rise.wrapping_mul(step) as i32);
-            let steps = if CUTS { steps.map(|step| step + (step >> 31 & 0xffff)) } else { steps };
-            packed_chord([u, v].map(|line| line.value(t)), steps)
-        };
-        for eight in eights {
-            *eight = node(chords.next());
-            black_box(());
-        }
-        *last = node(chords.last((count - 1) as u32 & (CHORD - 1)));
-        nodes
-    }
-
     /// Along chords. `CUTS`: steps are cut towards zero, for lines that must not leave the texture.
     #[inline(always)]
     pub(super) fn chords_of<const CUTS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
@@ -172,22 +175,20 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         if !self.is_packed || self.texture.is_large() {
             return self.each_any::<true>(pixels, curve);
         }
-        let mut nodes = Nodes::default();
-        let nodes = self.nodes::<CUTS>(pixels.len(), curve, &mut nodes);
-        self.chords_from(pixels, nodes);
-    }
-
-    #[inline(never)]
-    fn chords_from(&self, pixels: &mut [F::Word], nodes: &[[u32; 2]]) {
         let texels = self.texture.texels();
         if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
+            self.chords_sized::<CUTS, 0x1000>(pixels, texels, curve);
         } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
+            self.chords_sized::<CUTS, 0x400>(pixels, texels, curve);
         } else {
-            for (eight, &[packed, step]) in pixels.chunks_mut(CHORD as usize).zip(nodes) {
+            let mut nodes = Nodes::<CUTS>::new(curve);
+            let (eights, last) = eights_and_last(pixels);
+            for eight in eights {
+                let [packed, step] = nodes.next();
                 self.line_checked(eight, packed, step);
             }
+            let [packed, step] = nodes.last((last.len() as u32).wrapping_sub(1));
+            self.line_checked(last, packed, step);
         }
     }
 
@@ -198,24 +199,29 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
         }
     }
 
-    #[inline]
-    fn chords_sized<const COUNT: usize>(
+    #[inline(always)]
+    fn chords_sized<const CUTS: bool, const COUNT: usize>(
         &self,
         pixels: &mut [F::Word],
         texels: &[u16; COUNT],
-        nodes: &[[u32; 2]],
+        curve: &Curve,
     ) {
         let texel = sized(self.texture, texels);
-        let (eights, last) = pixels.as_chunks_mut::<{ CHORD as usize }>();
-        let mut nodes = nodes.iter();
-        for (eight, &[mut packed, step]) in eights.iter_mut().zip(&mut nodes) {
+        let mut nodes = Nodes::<CUTS>::new(curve);
+        let (eights, last) = eights_and_last(pixels);
+        for eight in eights {
+            let [mut packed, step] = nodes.next();
             for pixel in eight {
                 *pixel = F::rgb565(texel(packed));
                 packed = packed.wrapping_add(step);
             }
+            black_box(());
         }
-        if let Some(&[packed, step]) = nodes.next() {
-            self.line_sized(last, texels, packed, step);
+        let [mut packed, step] = nodes.last((last.len() as u32).wrapping_sub(1));
+        for pixel in last {
+            *pixel = F::rgb565(texel(packed));
+            packed = packed.wrapping_add(step);
+            black_box(());
         }
     }
 
@@ -306,6 +312,13 @@ fn at_once<const CHORDS: bool, F: PixelFormat>(
         *pixel = word(ts.next());
         black_box(());
     }
+}
+
+/// The pixels of a run's chords, and 1 to 8 of the last one, whose end is the run's.
+#[inline(always)]
+fn eights_and_last<W>(pixels: &mut [W]) -> (&mut [[W; CHORD as usize]], &mut [W]) {
+    let (before, last) = pixels.split_at_mut(pixels.len().saturating_sub(1) & !(CHORD as usize - 1));
+    (before.as_chunks_mut().0, last)
 }
 
 /// A chord from a place, in units of 32 bits, and its step; as a packed place and step, both rounded down.
