@@ -43,7 +43,7 @@ use super::inverses::ONE_LOG2;
 use super::units::{Form, Units};
 use crate::math::recip::looked_up;
 use crate::num::{IS_ARMV6M, mul_17, mul_high, normalise};
-use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup};
+use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 
 /// The step of w, 32 fraction bits, where the horizon is 176 pixels away.
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
@@ -311,8 +311,7 @@ fn set_table(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
     let above = attribute.divided(value, near.reciprocal, near.zeros);
     let (u, way) = (attribute.least.wrapping_add(above), above.wrapping_sub(attribute.horizon().0));
     // Cut towards zero.
-    let below_one = ((way >> 31) as u32 >> ((up + (31 - ONE_LOG2)) & 31)) >> 1;
-    let slope = way.wrapping_add_unsigned(below_one) >> ((ONE_LOG2 - up) & 31);
+    let slope = towards_zero(way >> ((ONE_LOG2 - up) & 31));
     *line = Linear { at: (u << (up & 31)).wrapping_sub(slope << ONE_LOG2) as u32, slope };
 }
 
