@@ -121,9 +121,11 @@ impl<'a> Perspective<'a> {
         if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> self.zeros == q {
             return (mantissa, self.zeros);
         }
-        let mantissa;
-        (mantissa, self.zeros) = normalise(q);
-        (mantissa, self.zeros)
+        let (mantissa, zeros) = normalise(q);
+        if IS_ARMV6M {
+            self.zeros = zeros;
+        }
+        (mantissa, zeros)
     }
 
     /// Draws pixels of a row, the first of which is (x, y).
@@ -236,8 +238,10 @@ impl<'a> Perspective<'a> {
         if count > 1 {
             set_table(&setup.attributes[1], &near, ups[1].into(), &mut lines[1]);
         }
-        for i in 2..count.min(ATTRIBUTES) {
-            set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+        if count > 2 {
+            for i in 2..count.min(ATTRIBUTES) {
+                set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+            }
         }
         Way::Table
     }
