@@ -49,6 +49,7 @@ use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
 
 /// How a part of a row is drawn. `Table` looks 1/w up at every pixel; in the general forms n/w, which the head calls distances.
+#[derive(PartialEq)]
 pub(super) enum Way {
     Straight,
     Table,
@@ -131,12 +132,18 @@ impl<'a> Perspective<'a> {
     /// Draws pixels of a row, the first of which is (x, y).
     #[inline(always)]
     pub(crate) fn draw<W>(&mut self, x: i32, y: i32, pixels: &mut [W], fill: &dyn Fill<W>) {
-        match (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32) {
-            Way::Straight => fill.straight(pixels, &self.curve),
-            Way::Table => fill.table(pixels, &self.curve),
-            Way::Chords => fill.chords(pixels, &self.curve),
-            Way::None => self.draw_parts(x, y, pixels, fill),
+        // One after another: a table of jumps takes longer.
+        let way = (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32);
+        if way == Way::Table {
+            return fill.table(pixels, &self.curve);
         }
+        if way == Way::Straight {
+            return fill.straight(pixels, &self.curve);
+        }
+        if way == Way::Chords {
+            return fill.chords(pixels, &self.curve);
+        }
+        self.draw_parts(x, y, pixels, fill);
     }
 
     /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
