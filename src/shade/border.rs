@@ -18,7 +18,7 @@ use super::fill::Fill;
 use super::inverses::inverse;
 use super::light::{FillTexels, Light};
 use super::packed::integer_bits;
-use super::texels::Texels;
+use super::texels::{Loops, Texels};
 use super::units::{Form, Units};
 use crate::frame::PixelFormat;
 use crate::raster::TriangleSetup;
@@ -216,13 +216,13 @@ pub(crate) struct Bordered<'a, F, B> {
 
 impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
     /// For coordinates with so many integer bits; `None` if they are too many.
-    pub(crate) fn new(texture: &'a Texture<'a>, uv_bits: [u32; 2]) -> Option<Self> {
+    pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32, uv_bits: [u32; 2]) -> Option<Self> {
         let (log2, own_bits) = (texture.log2(), integer_bits(texture));
         if uv_bits.iter().any(|bits| *bits > MOST_BITS) {
             return None;
         }
         let sides = [0, 1].map(|i| Side::new(log2[i], own_bits[i], uv_bits[i]));
-        Some(Self { texels: Texels::new(texture, 0), texture, sides, border: PhantomData })
+        Some(Self { texels: Texels::new(texture, scale_log2), texture, sides, border: PhantomData })
     }
 
     /// Draws a run in pieces.
@@ -304,9 +304,9 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
         if way == Way::Table {
             self.texels.table(pixels, curve);
         } else if self.sides.iter().any(|side| side.bits > MOST_BITS_OF_CHORDS) {
-            self.texels.each_any::<true>(pixels, curve);
+            self.texels.each_any::<F, true>(pixels, curve);
         } else if B::IS_MIRROR {
-            self.texels.chords_of::<true>(pixels, curve);
+            self.texels.chords_of::<F, true>(pixels, curve);
         } else {
             self.texels.chords(pixels, curve);
         }
@@ -337,8 +337,8 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
                     black_box(());
                 }
             }
-            Way::Table => Texels::<F>::each::<false>(pixels, curve, [u, v], texel),
-            Way::Chords => Texels::<F>::each::<true>(pixels, curve, [u, v], texel),
+            Way::Table => Loops::each::<F, false>(pixels, curve, [u, v], texel),
+            Way::Chords => Loops::each::<F, true>(pixels, curve, [u, v], texel),
         }
     }
 }

@@ -118,7 +118,11 @@ fn bordered<'a, B: Border, F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(
     recipe: &'a Recipe<'_>,
     pixels: &P,
 ) -> Option<Bordered<'a, F, B>> {
-    if Q::EVERY_PIXEL { None } else { Bordered::new(&recipe.texture, pixels.uv_bits()) }
+    if Q::EVERY_PIXEL {
+        None
+    } else {
+        Bordered::new(&recipe.texture, recipe.scale_log2.into(), pixels.uv_bits())
+    }
 }
 
 /// Whether a triangle shows none of what is beyond the borders.

@@ -109,7 +109,7 @@ impl<'a> Material<'a, Textured> {
 impl<'a> Material<'a, Clamped> {
     /// A texture whose border texels are seen beyond its borders. For labels and decals. Rows that cross a border are split there: they
     /// take about as long as if the texture [repeated](Material::textured), but for small triangles, and for coordinates of more than
-    /// ±2046 texels or times a [scale](Material::texture_scale), which take several times as long.
+    /// ±2046 texels, which take several times as long.
     #[must_use]
     pub const fn clamped(texture: &Texture<'a>) -> Self {
         Self::new(Recipe { texture: *texture, ..Recipe::plain(0) })

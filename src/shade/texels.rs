@@ -38,13 +38,44 @@ use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 use core::hint::black_box;
 use core::marker::PhantomData;
+use embedded_graphics::pixelcolor::Rgb565;
 
 /// Texels of a texture that repeats.
 pub(crate) struct Texels<'a, F> {
+    loops: Loops<'a>,
+    format: PhantomData<F>,
+}
+
+/// What the loops read, whatever the format: those for [`Rgb565`] are functions without type parameters, so that they are compiled
+/// with this crate and at its level of optimisation.
+pub(crate) struct Loops<'a> {
     texture: &'a Texture<'a>,
     is_packed: bool,
     square: Square<'a>,
-    format: PhantomData<F>,
+}
+
+#[inline(never)]
+fn straight_in_rgb565(loops: &Loops<'_>, pixels: &mut [u16], line: &Curve) {
+    loops.straight::<Rgb565>(pixels, line);
+}
+
+#[inline(never)]
+fn table_in_rgb565(loops: &Loops<'_>, pixels: &mut [u16], curve: &Curve) {
+    loops.table::<Rgb565>(pixels, curve);
+}
+
+#[inline(never)]
+fn chords_in_rgb565(loops: &Loops<'_>, pixels: &mut [u16], curve: &Curve) {
+    loops.chords::<Rgb565>(pixels, curve);
+}
+
+impl<'a, F> core::ops::Deref for Texels<'a, F> {
+    type Target = Loops<'a>;
+
+    #[inline]
+    fn deref(&self) -> &Loops<'a> {
+        &self.loops
+    }
 }
 
 /// A texture whose loops know its size.
@@ -100,12 +131,15 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
             (_, Ok(rows)) if a == b => Square::Of32(rows),
             _ => Square::Any,
         };
-        Self { texture, is_packed: texture.is_packable(scale_log2), square, format: PhantomData }
+        let loops = Loops { texture, is_packed: texture.is_packable(scale_log2), square };
+        Self { loops, format: PhantomData }
     }
+}
 
+impl Loops<'_> {
     /// Along a straight line, from packed coordinates on.
     #[inline]
-    fn line_sized<const COUNT: usize>(
+    fn line_sized<F: PixelFormat, const COUNT: usize>(
         &self,
         pixels: &mut [F::Word],
         texels: &[u16; COUNT],
@@ -117,16 +151,16 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
             *pixel = F::rgb565(texel(packed));
             packed = packed.wrapping_add(step);
         };
-        let (fours, rest) = pixels.as_chunks_mut::<4>();
-        for four in fours {
-            four.iter_mut().for_each(&mut draw);
+        let (blocks, rest) = pixels.as_chunks_mut::<8>();
+        for block in blocks {
+            block.iter_mut().for_each(&mut draw);
         }
         rest.iter_mut().for_each(draw);
     }
 
     /// Likewise, of any size.
     #[inline(never)]
-    fn line_checked(&self, pixels: &mut [F::Word], mut packed: u32, step: u32) {
+    fn line_checked<F: PixelFormat>(&self, pixels: &mut [F::Word], mut packed: u32, step: u32) {
         // A copy stays in registers.
         let texture = *self.texture;
         for pixel in pixels {
@@ -138,7 +172,12 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// Hands on blocks so short that truncated steps do not matter.
     #[inline(always)]
-    fn in_blocks(&self, mut pixels: &mut [F::Word], line: &Curve, run: impl Fn(&mut [F::Word], u32, u32)) {
+    fn in_blocks<F: PixelFormat>(
+        &self,
+        mut pixels: &mut [F::Word],
+        line: &Curve,
+        run: impl Fn(&mut [F::Word], u32, u32),
+    ) {
         let [a, b] = self.texture.log2();
         let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
         let (mut u, mut v) = (u as i32, v as i32);
@@ -158,7 +197,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// Along a straight line of coordinates that are not packed.
     #[inline(never)]
-    fn line_unpacked(&self, pixels: &mut [F::Word], line: &Curve) {
+    fn line_unpacked<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
         let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
         let (texture, mut at) = (*self.texture, [u as i32, v as i32]);
         for pixel in pixels {
@@ -170,25 +209,25 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// Along chords. `CUTS`: steps are cut towards zero, for lines that must not leave the texture.
     #[inline(always)]
-    pub(super) fn chords_of<const CUTS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
+    pub(super) fn chords_of<F: PixelFormat, const CUTS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
         // Packed chords need more room at the ends of the range than large textures have.
         if !self.is_packed || self.texture.is_large() {
-            return self.each_any::<true>(pixels, curve);
+            return self.each_any::<F, true>(pixels, curve);
         }
         let texels = self.texture.texels();
         if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.chords_sized::<CUTS, 0x1000>(pixels, texels, curve);
+            self.chords_sized::<F, CUTS, 0x1000>(pixels, texels, curve);
         } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.chords_sized::<CUTS, 0x400>(pixels, texels, curve);
+            self.chords_sized::<F, CUTS, 0x400>(pixels, texels, curve);
         } else {
             let mut nodes = Nodes::<CUTS>::new(curve);
             let (eights, last) = eights_and_last(pixels);
             for eight in eights {
                 let [packed, step] = nodes.next();
-                self.line_checked(eight, packed, step);
+                self.line_checked::<F>(eight, packed, step);
             }
             let [packed, step] = nodes.last((last.len() as u32).wrapping_sub(1));
-            self.line_checked(last, packed, step);
+            self.line_checked::<F>(last, packed, step);
         }
     }
 
@@ -200,7 +239,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     }
 
     #[inline(always)]
-    fn chords_sized<const CUTS: bool, const COUNT: usize>(
+    fn chords_sized<F: PixelFormat, const CUTS: bool, const COUNT: usize>(
         &self,
         pixels: &mut [F::Word],
         texels: &[u16; COUNT],
@@ -227,7 +266,7 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
 
     /// With 1/w at every pixel, of 2^`A` × 2^`A` texels.
     #[inline(always)]
-    fn table_sized<const A: u32, const SIDE: usize>(
+    fn table_sized<F: PixelFormat, const A: u32, const SIDE: usize>(
         &self,
         pixels: &mut [F::Word],
         texels: &[[u16; SIDE]; SIDE],
@@ -235,14 +274,14 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     ) {
         let shift = 32 - A;
         let [u, v, ..] = curve.lines;
-        Self::each::<false>(pixels, curve, [u, v], move |u, v| {
+        Self::each::<F, false>(pixels, curve, [u, v], move |u, v| {
             texels[(v >> shift) as usize & (SIDE - 1)][(u >> shift) as usize & (SIDE - 1)]
         });
     }
 
     /// With t at every pixel: 1/w, or with `CHORDS` n/w.
     #[inline(always)]
-    pub(super) fn each<const CHORDS: bool>(
+    pub(super) fn each<F: PixelFormat, const CHORDS: bool>(
         pixels: &mut [F::Word],
         curve: &Curve,
         [u, v]: [Linear; 2],
@@ -257,19 +296,54 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     }
 
     #[inline(never)]
-    fn table_32(&self, pixels: &mut [F::Word], texels: &[[u16; 32]; 32], curve: &Curve) {
-        self.table_sized::<5, 32>(pixels, texels, curve);
+    fn table_32<F: PixelFormat>(&self, pixels: &mut [F::Word], texels: &[[u16; 32]; 32], curve: &Curve) {
+        self.table_sized::<F, 5, 32>(pixels, texels, curve);
     }
 
     /// Likewise, of any size.
     #[inline(never)]
-    pub(super) fn each_any<const CHORDS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
+    pub(super) fn each_any<F: PixelFormat, const CHORDS: bool>(&self, pixels: &mut [F::Word], curve: &Curve) {
         let ([a, _], texels) = (self.texture.log2(), self.texture.texels());
         let [u_down, v_down] = downs(self.texture);
-        Self::each::<CHORDS>(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
+        Self::each::<F, CHORDS>(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
             let index = (v >> v_down) << a | u >> u_down;
             texels.get(index as usize).copied().unwrap_or_default()
         });
+    }
+
+    #[inline]
+    fn straight<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
+        if !self.is_packed {
+            return self.line_unpacked::<F>(pixels, line);
+        }
+        let texels = self.texture.texels();
+        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
+            self.in_blocks::<F>(pixels, line, |block, packed, step| {
+                self.line_sized::<F, _>(block, texels, packed, step)
+            });
+        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
+            self.in_blocks::<F>(pixels, line, |block, packed, step| {
+                self.line_sized::<F, _>(block, texels, packed, step)
+            });
+        } else {
+            self.in_blocks::<F>(pixels, line, |block, packed, step| {
+                self.line_checked::<F>(block, packed, step)
+            });
+        }
+    }
+
+    #[inline]
+    fn table<F: PixelFormat>(&self, pixels: &mut [F::Word], curve: &Curve) {
+        match self.square {
+            Square::Of64(texels) => self.table_sized::<F, 6, 64>(pixels, texels, curve),
+            Square::Of32(texels) => self.table_32::<F>(pixels, texels, curve),
+            Square::Any => self.each_any::<F, false>(pixels, curve),
+        }
+    }
+
+    #[inline]
+    fn chords<F: PixelFormat>(&self, pixels: &mut [F::Word], curve: &Curve) {
+        self.chords_of::<F, false>(pixels, curve);
     }
 }
 
@@ -346,33 +420,28 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
         Units::modular(integer_bits(self.texture))
     }
 
-    #[inline(never)]
+    #[inline]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
-        if !self.is_packed {
-            return self.line_unpacked(pixels, line);
-        }
-        let texels = self.texture.texels();
-        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_sized(block, texels, packed, step));
-        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_sized(block, texels, packed, step));
-        } else {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_checked(block, packed, step));
+        match F::as_rgb565(pixels) {
+            Some(pixels) => straight_in_rgb565(&self.loops, pixels, line),
+            None => self.loops.straight::<F>(pixels, line),
         }
     }
 
-    #[inline(never)]
+    #[inline]
     fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
-        match self.square {
-            Square::Of64(texels) => self.table_sized::<6, 64>(pixels, texels, curve),
-            Square::Of32(texels) => self.table_32(pixels, texels, curve),
-            Square::Any => self.each_any::<false>(pixels, curve),
+        match F::as_rgb565(pixels) {
+            Some(pixels) => table_in_rgb565(&self.loops, pixels, curve),
+            None => self.loops.table::<F>(pixels, curve),
         }
     }
 
-    #[inline(never)]
+    #[inline]
     fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
-        self.chords_of::<false>(pixels, curve);
+        match F::as_rgb565(pixels) {
+            Some(pixels) => chords_in_rgb565(&self.loops, pixels, curve),
+            None => self.loops.chords::<F>(pixels, curve),
+        }
     }
 }
 
@@ -404,7 +473,6 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
 pub(super) mod tests {
     use super::*;
     use crate::frame::BigEndian;
-    use embedded_graphics::pixelcolor::Rgb565;
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
