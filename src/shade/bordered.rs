@@ -6,10 +6,11 @@
 //!
 //! A triangle that shows none of what is beyond the borders, as most do, is drawn by the loops of textures that repeat.
 
-use super::border::{Border, Bordered, Clamp, LitBordered, Mirror};
+use super::border::{Border, Clamp, Mirror};
 use super::channels::{Gray, RedBlueGreen, lit};
 use super::kinds::sealed::Sealed;
 use super::kinds::{Base, Kind, LitKind, LitTextured, Textured, channels_of, texel_of, whole};
+use super::pieces::{Bordered, LitBordered};
 use super::quality::Quality;
 use super::recipe::Recipe;
 use super::shader::{Pixels, Varying};

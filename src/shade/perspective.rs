@@ -21,7 +21,7 @@
 //!   near end, n/w from the same table at every eighth pixel, and a straight line between. u = u_near + s·n/w, s
 //!   being its change over the first pixel. A chord of L pixels is off by L²/4h, h being how far the horizon is
 //!   there: by up to ¼, of which the errors of its ends take some.
-//! - *Distances* (shaders of users, textures that do not repeat, and [`Exact`](super::Exact)): n/w at every pixel. It
+//! - *Distances* (shaders of users, and [`Exact`](super::Exact)): n/w at every pixel. It
 //!   is off by n/1024 pixels at most, and n is at most 63; for `Exact` one step of Newton's iteration makes that
 //!   0.005.
 //! - *Straight*, where w changes so little that the tangent at the near end is off by n²/D ≤ 1/8 pixel.

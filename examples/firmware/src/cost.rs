@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn rectangles_cover_what_their_shape_says() {
-        for (surface, quality, shape) in (0..6 * 3 * 64).map(|i| (i % 6, i / 6 % 3, i / 18)) {
+        for (surface, quality, shape) in (0..8 * 3 * 64).map(|i| (i % 8, i / 8 % 3, i / 24)) {
             let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
             let mut frame = Deep::new(SIZE, &mut pixels, &mut depth).expect("the size fits");
             rectangle(surface, quality, shape, &mut frame);
