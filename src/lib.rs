@@ -215,7 +215,8 @@ pub use shade::{
 pub mod material {
     pub use crate::shade::{
         Additive, Clamped, ColorlessKind, CutOut, Flat, Gouraud, Kind, Layer, LayerIn, LitClamped, LitKind,
-        LitTextured, Masked, Multiply, Opaque, Over, ScreenDoor, TexelKind, Textured, VertexAlpha,
+        LitMirrored, LitTextured, Masked, Mirrored, Multiply, Opaque, Over, ScreenDoor, TexelKind, Textured,
+        VertexAlpha,
     };
 }
 

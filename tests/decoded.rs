@@ -4,7 +4,7 @@
 //!
 //! Where a pixel is many texels a texel tells a small part of a pixel, and where a texel is many pixels how exact its border is.
 //!
-//! `cargo test decoded:: -- --nocapture` prints the largest errors by quality, family and texture, repeated and clamped.
+//! `cargo test decoded:: -- --nocapture` prints the largest errors by quality, family and texture: repeated, clamped and mirrored.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
 use crate::{common, reference};
@@ -12,7 +12,7 @@ use crate::{common, reference};
 use std::cell::{Cell, RefCell};
 
 use common::decoded::{
-    Case, Chart, FAMILIES, RATIOS, SURFACES, Shows, Surface, TEXTURES, Truth, case, colors, words,
+    Beyond, Case, Chart, FAMILIES, RATIOS, SURFACES, Shows, Surface, TEXTURES, Truth, case, colors, words,
 };
 use common::{cases, for_all};
 use fixel::{Affine, Exact, Material, Quality, QuarterPixel, Texture};
@@ -43,7 +43,7 @@ impl Worst {
 /// How texels along an axis are decoded.
 struct Decoder {
     side: i64,
-    clamp: bool,
+    beyond: Beyond,
     /// The first and the last texel that may be sampled, of a texture without end.
     range: (i64, i64),
 }
@@ -55,7 +55,7 @@ impl Decoder {
         let range = (scaled(low) >> 16, scaled(high - 1).max(scaled(low)));
         // Below the largest there is always 2⁻¹⁶, which scale does not make a texel.
         let last = if high > low { (scaled(high) - 1) >> 16 } else { range.1 >> 16 };
-        Self { side: 1 << TEXTURES[case.texture][axis], clamp: case.clamp, range: (range.0, last) }
+        Self { side: 1 << TEXTURES[case.texture][axis], beyond: case.beyond, range: (range.0, last) }
     }
 
     /// How far the nearest of the coordinates that a texel may stand for is from `exact`, in texels. `None` if all of them are out of
@@ -63,14 +63,17 @@ impl Decoder {
     fn off(&self, texel: i64, exact: f64) -> Option<f64> {
         let (first, last) = self.range;
         let distance = |from: i64, end: i64| (from as f64 - exact).max(exact - end as f64).max(0.0);
-        if self.clamp {
+        if self.beyond == Beyond::Clamped {
             let from = if texel == 0 { first.min(0) } else { texel };
             let end = if texel == self.side - 1 { last.max(texel) + 1 } else { texel + 1 };
             return (from <= last && end > first).then(|| distance(from, end));
         }
-        let below = texel + ((exact - texel as f64) / self.side as f64).floor() as i64 * self.side;
-        // One more on either side: `exact` may be the end of the range.
-        let places = (-1..=1).map(|turn| below + turn * self.side);
+        let mirrored = self.beyond == Beyond::Mirrored;
+        let period = if mirrored { 2 * self.side } else { self.side };
+        let seen = if mirrored { vec![texel, period - 1 - texel] } else { vec![texel] };
+        let turn = (exact / period as f64).floor() as i64;
+        // Two more on either side: `exact` may be the end of the range.
+        let places = seen.into_iter().flat_map(|at| (-2..=2).map(move |more| at + (turn + more) * period));
         places
             .filter(|place| (first..=last).contains(place))
             .map(|place| distance(place, place + 1))
@@ -79,7 +82,12 @@ impl Decoder {
 
     /// Whether twice the bound is seen, in texels.
     fn tells(&self, texel: i64, bound: f64) -> bool {
-        if self.clamp { 0 < texel && texel < self.side - 1 } else { 4.0 * bound < (self.side - 1) as f64 }
+        match self.beyond {
+            Beyond::Repeated => 4.0 * bound < (self.side - 1) as f64,
+            Beyond::Clamped => 0 < texel && texel < self.side - 1,
+            // Farther from where it is seen in the mirror.
+            Beyond::Mirrored => 4.0 * bound < (2 * texel.min(self.side - 1 - texel)) as f64,
+        }
     }
 }
 
@@ -90,11 +98,14 @@ fn measure<Q: Quality>(case: &Case, charts: &[Chart], truth: &Truth, bound: f64)
         let scale = case.scale as u8;
         let textured = Material::textured(&texture).texture_scale(scale).quality::<Q>();
         let clamped = Material::clamped(&texture).texture_scale(scale).quality::<Q>();
-        let words = match (case.surface, case.clamp) {
-            (Surface::Plain, false) => words(case, &textured),
-            (Surface::Plain, true) => words(case, &clamped),
-            (Surface::Gray | Surface::Colored, false) => words(case, &textured.lit()),
-            (Surface::Gray | Surface::Colored, true) => words(case, &clamped.lit()),
+        let mirrored = Material::mirrored(&texture).texture_scale(scale).quality::<Q>();
+        let words = match (case.surface, case.beyond) {
+            (Surface::Plain, Beyond::Repeated) => words(case, &textured),
+            (Surface::Plain, Beyond::Clamped) => words(case, &clamped),
+            (Surface::Plain, Beyond::Mirrored) => words(case, &mirrored),
+            (_, Beyond::Repeated) => words(case, &textured.lit()),
+            (_, Beyond::Clamped) => words(case, &clamped.lit()),
+            (_, Beyond::Mirrored) => words(case, &mirrored.lit()),
         };
         for (axis, shift) in axes {
             let (decoder, field) = (Decoder::new(case, axis), truth.field(axis));
@@ -129,7 +140,7 @@ fn measure<Q: Quality>(case: &Case, charts: &[Chart], truth: &Truth, bound: f64)
 
 /// What was met, by what.
 struct Table {
-    by_family: Vec<[[Worst; 2]; TEXTURES.len()]>,
+    by_family: Vec<[[Worst; 3]; TEXTURES.len()]>,
     by_ratio: [Worst; RATIOS.len()],
     by_scale: [Worst; 9],
     by_surface: [Worst; SURFACES.len()],
@@ -146,7 +157,7 @@ impl Table {
     }
 
     fn add(&mut self, family: usize, case: &Case, found: Worst) {
-        self.by_family[family][case.texture][usize::from(case.clamp)].join(found);
+        self.by_family[family][case.texture][case.beyond as usize].join(found);
         self.by_ratio[case.ratio].join(found);
         self.by_scale[case.scale as usize].join(found);
         let surface = SURFACES.iter().position(|surface| *surface == case.surface);
@@ -160,11 +171,13 @@ impl Table {
     }
 
     fn print(&self, name: &str) {
-        println!("{name}: largest errors in pixels, repeated and clamped");
-        let textures = TEXTURES.map(|[a, b]| format!("{:>13}", format!("{}×{}", 1 << a, 1 << b)));
+        println!("{name}: largest errors in pixels: repeated, clamped, mirrored");
+        let textures = TEXTURES.map(|[a, b]| format!("{:>19}", format!("{}×{}", 1 << a, 1 << b)));
         println!("{:9}{}     all     pixels    telling       fine", "", textures.concat());
         for (i, (family, found)) in FAMILIES.iter().zip(&self.by_family).enumerate() {
-            let cells = found.map(|[repeat, clamp]| format!(" {:.4}/{:.3}", repeat.error, clamp.error));
+            let cells = found.map(|[repeat, clamp, mirror]| {
+                format!(" {:.4}/{:.3}/{:.3}", repeat.error, clamp.error, mirror.error)
+            });
             let Worst { error, pixels, telling, fine } = self.family(i);
             println!(
                 "{:9}{}  {error:.4} {pixels:10} {telling:10} {fine:10}",
@@ -318,8 +331,11 @@ fn measure_colors<Q: Quality>(case: &Case, levels: Levels, bound: f64) -> Result
     let texture = Texture::new(&white, 3, 3);
     let words = match levels {
         Levels::Gouraud => words(case, &Material::gouraud().quality::<Q>()),
-        Levels::Light if case.clamp => words(case, &Material::clamped(&texture).lit().quality::<Q>()),
-        Levels::Light => words(case, &Material::textured(&texture).lit().quality::<Q>()),
+        Levels::Light => match case.beyond {
+            Beyond::Repeated => words(case, &Material::textured(&texture).lit().quality::<Q>()),
+            Beyond::Clamped => words(case, &Material::clamped(&texture).lit().quality::<Q>()),
+            Beyond::Mirrored => words(case, &Material::mirrored(&texture).lit().quality::<Q>()),
+        },
     };
     let truth = Truth::new(case, 2..5);
     let mut off = Off::default();

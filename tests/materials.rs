@@ -1,5 +1,5 @@
 //! The promise, seen through the crate's own materials and the loops they are drawn with: the texel that is fetched is
-//! one that lies within the contract's bound of the exact texture coordinates, repeated or clamped, and the colour is
+//! one that lies within the contract's bound of the exact texture coordinates, repeated, clamped or mirrored, and the colour is
 //! within that bound of the exact one. Never one from outside the range of the triangle's three vertices.
 #![allow(clippy::float_arithmetic, reason = "errors are measured in f64")]
 
@@ -7,6 +7,7 @@ use crate::{common, reference};
 
 use std::cell::Cell;
 
+use common::decoded::Beyond;
 use common::generate::{strip, triangle};
 use common::{Canvas, Drawn, Record, Recording, Strip, for_all};
 use fixel::embedded_graphics::pixelcolor::Rgb565;
@@ -66,13 +67,13 @@ fn tolerated(triangle: &Triangle, exact: &Sample<'_>, attribute: usize, bound: f
 /// A surface that writes down what it shows.
 type Recorded<'a> = Surface<'a, Recording, NoDepth>;
 
-fn of_texture<'a, Q: Quality>(texture: &Texture<'a>, clamp: bool) -> Recorded<'a> {
-    scaled_texture::<Q>(texture, clamp, 0, false)
+fn of_texture<'a, Q: Quality>(texture: &Texture<'a>, beyond: Beyond) -> Recorded<'a> {
+    scaled_texture::<Q>(texture, beyond, 0, false)
 }
 
 fn scaled_texture<'a, Q: Quality>(
     texture: &Texture<'a>,
-    clamp: bool,
+    beyond: Beyond,
     scale_log2: u32,
     is_lit: bool,
 ) -> Recorded<'a> {
@@ -80,21 +81,20 @@ fn scaled_texture<'a, Q: Quality>(
         if is_lit { (&material.lit()).into() } else { (&material).into() }
     }
     let scale_log2 = scale_log2 as u8;
-    if clamp {
-        of(Material::clamped(texture).texture_scale(scale_log2).quality::<Q>(), is_lit)
-    } else {
-        of(Material::textured(texture).texture_scale(scale_log2).quality::<Q>(), is_lit)
+    match beyond {
+        Beyond::Repeated => of(Material::textured(texture).texture_scale(scale_log2).quality::<Q>(), is_lit),
+        Beyond::Clamped => of(Material::clamped(texture).texture_scale(scale_log2).quality::<Q>(), is_lit),
+        Beyond::Mirrored => of(Material::mirrored(texture).texture_scale(scale_log2).quality::<Q>(), is_lit),
     }
 }
 
 /// Whether a texel is met between two coordinates.
-fn met(texel: i64, side: i64, clamp: bool, (low, high): (f64, f64)) -> bool {
+fn met(texel: i64, side: i64, beyond: Beyond, (low, high): (f64, f64)) -> bool {
     let (first, last) = ((low / UNIT).floor() as i64, (high / UNIT).floor() as i64);
-    if clamp {
-        (first.clamp(0, side - 1)..=last.clamp(0, side - 1)).contains(&texel)
-    } else {
-        last - first >= side || (first..=last).any(|place| place.rem_euclid(side) == texel)
+    if beyond == Beyond::Clamped {
+        return (first.clamp(0, side - 1)..=last.clamp(0, side - 1)).contains(&texel);
     }
+    last - first >= 2 * side || (first..=last).any(|place| beyond.texel(place, side) == texel)
 }
 
 fn draw<'a>(strip: Strip, triangle: &Triangle, surface: impl Into<Recorded<'a>>) -> Vec<Drawn> {
@@ -120,7 +120,7 @@ fn fetches_within<'a>(
     strip: Strip,
     triangle: &Triangle,
     surface: impl Into<Recorded<'a>>,
-    (axis, log2, clamp, bound): (usize, u32, bool, f64),
+    (axis, log2, beyond, bound): (usize, u32, Beyond, f64),
     mut tells: impl FnMut(f64, f64),
 ) -> Result<(), TestCaseError> {
     for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, surface)) {
@@ -130,7 +130,7 @@ fn fetches_within<'a>(
         }
         let texel = i64::from(drawn.attributes[0]);
         let within = tolerated(triangle, &triangle.at(x, y), axis, bound);
-        let fits = met(texel, 1 << log2, clamp, within);
+        let fits = met(texel, 1 << log2, beyond, within);
         let (low, high) = (within.0 / UNIT, within.1 / UNIT);
         prop_assert!(
             fits,
@@ -152,18 +152,17 @@ fn textured<Q: Quality>(name: &str, usual: u32, bound: f64) {
     let charts: &'static [Chart] = Vec::leak(SIZES.map(Chart::new).into());
     let (fetched, telling) = (Cell::new(0_u64), Cell::new(0_u64));
     // Textures that are stretched show more of an error than those of which each pixel sees another texel.
-    let cases = strip().prop_flat_map(|strip| {
-        (Just(strip), triangle(strip), 0..9_u32, 0..SIZES.len(), prop::bool::weighted(0.3))
-    });
-    for_all(name, usual, cases, |(strip, triangle, stretch, chart, clamp)| {
+    let cases = strip()
+        .prop_flat_map(|strip| (Just(strip), triangle(strip), 0..9_u32, 0..SIZES.len(), Beyond::any()));
+    for_all(name, usual, cases, |(strip, triangle, stretch, chart, beyond)| {
         let triangle = stretched(triangle, stretch);
         for (attribute, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
-            let surface = of_texture::<Q>(&texture, clamp);
+            let surface = of_texture::<Q>(&texture, beyond);
             let tells = |low: f64, high: f64| {
                 fetched.set(fetched.get() + 1);
                 telling.set(telling.get() + u64::from(high - low < f64::from(1 << log2) / 2.0));
             };
-            fetches_within(strip, &triangle, surface, (attribute, log2, clamp, bound), tells)?;
+            fetches_within(strip, &triangle, surface, (attribute, log2, beyond, bound), tells)?;
         }
         Ok(())
     });
@@ -196,7 +195,7 @@ fn a_small_triangle_with_a_large_texture_is_within_the_bound() {
         corner((3, 201), 632_578_662, 58_456),
     ]);
     let (texture, log2) = chart.textures()[0];
-    let at = (0, log2, false, 0.25);
+    let at = (0, log2, Beyond::Repeated, 0.25);
     fetches_within(Strip::new(40, 40, 0), &triangle, &Material::textured(&texture), at, |_, _| ())
         .expect("it is within the bound");
 }
@@ -212,7 +211,7 @@ fn level_rows_of_textures_are_within_the_bound_600_cases() {
         let triangle = Triangle([corner(0, 0, start), corner(0, 4, start), corner(width, 2, end)]);
         let strip = Strip::new(1000, 4, 0);
         let (texture, log2) = charts[chart].textures()[0];
-        let at = |bound| (0, log2, false, bound);
+        let at = |bound| (0, log2, Beyond::Repeated, bound);
         let material = Material::textured(&texture);
         fetches_within(strip, &triangle, &material, at(0.25), |_, _| ())?;
         fetches_within(strip, &triangle, &material.exact(), at(0.02), |_, _| ())
@@ -225,16 +224,19 @@ fn straight_texels(
     strip: Strip,
     triangle: &Triangle,
     surface: Recorded<'_>,
-    (axis, log2, clamp): (usize, u32, bool),
+    (axis, log2, beyond): (usize, u32, Beyond),
     (scale_log2, ahead): (u32, i128),
 ) -> Result<u32, TestCaseError> {
     let side = 1 << log2;
     let shows = |right: &std::ops::RangeInclusive<i128>, texel: i128| {
-        if clamp {
+        if beyond == Beyond::Clamped {
             return (*right.start()).clamp(0, side - 1) <= texel
                 && texel <= (*right.end()).clamp(0, side - 1);
         }
-        right.clone().take(side as usize).any(|right| right.rem_euclid(side) == texel)
+        right
+            .clone()
+            .take(2 * side as usize)
+            .any(|right| i128::from(beyond.texel(right as i64, side as i64)) == texel)
     };
     let mut telling = 0;
     for ((x, y), drawn) in strip.pixels().zip(draw(strip, triangle, surface)) {
@@ -246,13 +248,13 @@ fn straight_texels(
         let right = straight.texels(scale_log2, ahead);
         prop_assert!(
             shows(&right, texel),
-            "axis {} at {}, {}: texel {} of {} (clamped: {}) for {} · 2^{}, which is one of {:?}",
+            "axis {} at {}, {}: texel {} of {} ({:?}) for {} · 2^{}, which is one of {:?}",
             axis,
             x,
             y,
             texel,
             side,
-            clamp,
+            beyond,
             straight.value() / UNIT,
             scale_log2,
             right
@@ -298,14 +300,14 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
         let plane = ([[gradient(), gradient()], [gradient(), gradient()]], [start(), start()]);
         // The nearest possible, and far away.
         let q = prop::sample::select(&[(1_u32 << 31) - 1, 1 << 30, 1 << 20, 7][..]);
-        let texture = (0..SIZES.len(), prop::bool::weighted(0.3), prop_oneof![2 => Just(0), 1 => 0..=8_u32]);
+        let texture = (0..SIZES.len(), Beyond::any(), prop_oneof![2 => Just(0), 1 => 0..=8_u32]);
         (Just(strip), triangle(strip), plane, (q, 0..9_u32), texture)
     });
     let telling = Cell::new(0_u64);
     for_all(name, usual, cases, |(strip, triangle, (gradients, starts), (q, stretch), texture)| {
-        let (chart, clamp, scale_log2) = texture;
+        let (chart, beyond, scale_log2) = texture;
         // Beyond ±32768 texels coordinates begin anew, which no texture that repeats shows.
-        let scale_log2 = if clamp { 0 } else { scale_log2 };
+        let scale_log2 = if beyond == Beyond::Repeated { scale_log2 } else { 0 };
         let mut triangle = if !lattice {
             stretched(triangle, stretch)
         } else if let Some(triangle) = on_lattice(&triangle, gradients, starts) {
@@ -316,8 +318,8 @@ fn straight_triangles(name: &str, usual: u32, lattice: bool) {
         for (axis, (texture, log2)) in charts[chart].textures().into_iter().enumerate() {
             let [affine, quarter_pixel, exact] =
                 [scaled_texture::<Affine>, scaled_texture::<QuarterPixel>, scaled_texture::<Exact>]
-                    .map(|make| [false, true].map(|is_lit| make(&texture, clamp, scale_log2, is_lit)));
-            let by = (axis, log2, clamp);
+                    .map(|make| [false, true].map(|is_lit| make(&texture, beyond, scale_log2, is_lit)));
+            let by = (axis, log2, beyond);
             let error = (scale_log2, ahead(&triangle, axis, scale_log2));
             // Full light, grey or not, leaves texels as they are.
             for corner in &mut triangle.0 {
@@ -406,7 +408,7 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
         ([-100..300_i32, -100..300_i32], 0..8_usize, any::<bool>()),
         (
             0..charts.len(),
-            any::<bool>(),
+            Beyond::any(),
             prop_oneof![3 => Just(0), 1 => 0..4_u32],
             prop::sample::select(&[1 << 30, (1_u32 << 31) - 1][..]),
         ),
@@ -416,12 +418,12 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
         "sprites",
         2000,
         cases,
-        |(([x, y], [w, h], (texels, px)), (from, way, diagonal), (chart, clamp, scale_log2, q))| {
+        |(([x, y], [w, h], (texels, px)), (from, way, diagonal), (chart, beyond, scale_log2, q))| {
             // Coordinates at centres are whole, or 1/16 texel away from that, of which 2^`scale_log2` times as much is seen.
             let grid = if scale_log2 > 0 { 8 } else { px };
             let [x, y] = [x, y].map(|at| at / grid * grid);
             // Whole texels, on as many pixels; turned by 90° what was its width is its height.
-            let from = if clamp { [0; 2] } else { from };
+            let from = if beyond == Beyond::Clamped { [0; 2] } else { from };
             let on_screen = if way % 2 == 0 { [w, h] } else { [h, w] };
             let to = [x + 16 * px * on_screen[0], y + 16 * px * on_screen[1]];
             let uv = [from[0], from[1], from[0] + texels * w, from[1] + texels * h]
@@ -433,17 +435,13 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
                 let side = 1 << log2;
                 let expected: Vec<_> = sprite_texels(&halves, strip, axis, scale_log2)
                     .into_iter()
-                    .map(|texel| {
-                        texel.map(
-                            |texel| if clamp { texel.clamp(0, side - 1) } else { texel.rem_euclid(side) },
-                        )
-                    })
+                    .map(|texel| texel.map(|texel| i128::from(beyond.texel(texel as i64, side))))
                     .collect();
                 let pictures = [
-                    scaled_texture::<QuarterPixel>(&texture, clamp, scale_log2, false),
-                    scaled_texture::<Affine>(&texture, clamp, scale_log2, false),
-                    scaled_texture::<Exact>(&texture, clamp, scale_log2, false),
-                    scaled_texture::<QuarterPixel>(&texture, clamp, scale_log2, true),
+                    scaled_texture::<QuarterPixel>(&texture, beyond, scale_log2, false),
+                    scaled_texture::<Affine>(&texture, beyond, scale_log2, false),
+                    scaled_texture::<Exact>(&texture, beyond, scale_log2, false),
+                    scaled_texture::<QuarterPixel>(&texture, beyond, scale_log2, true),
                 ]
                 .map(|surface| draw_both(strip, &halves, surface));
                 for (kind, picture) in pictures.into_iter().enumerate() {
@@ -453,7 +451,7 @@ fn sprites_show_every_texel_as_often_as_they_should_2_000_cases() {
                     }
                 }
                 // 1:1, every column or row of texels is seen as often as the other side is long, whatever the rule says.
-                if (texels, px) == (1, 1) && !clamp {
+                if (texels, px) == (1, 1) && beyond == Beyond::Repeated {
                     let mut times = vec![0; side as usize];
                     for texel in expected.iter().flatten() {
                         times[*texel as usize] += 1;
@@ -557,12 +555,12 @@ fn textured_within_range() {
     let cases = strip().prop_flat_map(|strip| (Just(strip), triangle(strip)));
     for_all("texels, Affine", 2000, cases, |(strip, triangle)| {
         for (attribute, (texture, log2)) in chart.textures().into_iter().enumerate() {
-            for clamp in [false, true] {
+            for beyond in Beyond::ALL {
                 let (low, high) = triangle.sampled(attribute);
                 let within = (f64::from(low), f64::from(high));
-                for drawn in draw(strip, &triangle, of_texture::<Affine>(&texture, clamp)) {
+                for drawn in draw(strip, &triangle, of_texture::<Affine>(&texture, beyond)) {
                     let texel = i64::from(drawn.attributes[0]);
-                    prop_assert!(!drawn.written || met(texel, 1 << log2, clamp, within));
+                    prop_assert!(!drawn.written || met(texel, 1 << log2, beyond, within));
                 }
             }
         }
@@ -612,7 +610,8 @@ fn textures_of_a_wrong_length_are_typed_errors() {
 
 #[test]
 fn pictures_of_4_texels_by_hand() {
-    // One texel a pixel, without perspective: repeated, the chart itself; clamped, its border around it.
+    // One texel a pixel, without perspective: repeated, the chart itself; clamped, its border around it;
+    // mirrored, the chart turned round.
     let chart = Chart::new((1, 1));
     let corner = |x: i32, y: i32| reference::Corner {
         x: 16 * x,
@@ -622,13 +621,14 @@ fn pictures_of_4_texels_by_hand() {
     };
     let triangle = Triangle([corner(-20, -20), corner(-20, 40), corner(40, -20)]);
     let strip = Strip::new(5, 1, 1);
-    let fetch = |clamp| {
+    let fetch = |beyond| {
         let (texture, _) = chart.textures()[0];
-        let drawn = draw(strip, &triangle, of_texture::<QuarterPixel>(&texture, clamp));
+        let drawn = draw(strip, &triangle, of_texture::<QuarterPixel>(&texture, beyond));
         drawn.iter().map(|drawn| drawn.attributes[0]).collect::<Vec<_>>()
     };
-    assert_eq!(fetch(false), [0, 1, 0, 1, 0]);
-    assert_eq!(fetch(true), [0, 1, 1, 1, 1]);
+    assert_eq!(fetch(Beyond::Repeated), [0, 1, 0, 1, 0]);
+    assert_eq!(fetch(Beyond::Clamped), [0, 1, 1, 1, 1]);
+    assert_eq!(fetch(Beyond::Mirrored), [0, 1, 1, 0, 0]);
     let mut record = Record::blank(strip);
     record.record::<Exact>(&triangle, Cull::Back, fixel::Inputs::Uv);
     let column = record.pixels.iter().map(|drawn| f64::from(drawn.attributes[0]) / UNIT);

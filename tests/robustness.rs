@@ -229,7 +229,7 @@ fn on_all_formats<K: Kind, Q: Quality>(
 fn materials_on_triangles_of_any_bits_10_000_cases() {
     let texels: Vec<u16> = (0..=u16::MAX).collect();
     let sizes = [(0, 0), (8, 8), (10, 6), (6, 10), (3, 5)];
-    let cases = (target(), [vertex(), vertex(), vertex()], 0..4_u8, 0..3_u8, 0..sizes.len());
+    let cases = (target(), [vertex(), vertex(), vertex()], 0..5_u8, 0..3_u8, 0..sizes.len());
     for_all("materials on vertices of any bits", 10_000, cases, |(target, vertices, kind, quality, size)| {
         let (width, height) = sizes[size];
         let texture = Texture::new(&texels[..1 << (width + height)], width, height);
@@ -237,6 +237,7 @@ fn materials_on_triangles_of_any_bits_10_000_cases() {
             0 => in_a_quality(quality, target, &vertices, Material::flat(Rgb565::MAGENTA)),
             1 => in_a_quality(quality, target, &vertices, Material::gouraud()),
             2 => in_a_quality(quality, target, &vertices, Material::textured(&texture)),
+            3 => in_a_quality(quality, target, &vertices, Material::mirrored(&texture)),
             _ => in_a_quality(quality, target, &vertices, Material::clamped(&texture)),
         }
     });
@@ -583,6 +584,7 @@ fn surface<'a, Q: Quality, D: DepthFormat>(
         6 => of::<Q, D>(textured.lit().two_sided().texture_scale(3), cull),
         7 => of::<Q, D>(textured.lit().faceted().texture_scale(8), cull),
         8 => of::<Q, D>(textured.lit(), cull),
+        9 => of::<Q, D>(Material::mirrored(texture), cull),
         kind => of::<Q, D>(textured.texture_scale([0, 1, 5, 8, u8::MAX][usize::from(kind) % 5]), cull),
     }
 }

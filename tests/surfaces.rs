@@ -127,6 +127,7 @@ fn all<F: BlendFormat<Word = u16>, D: DepthFormat>() -> Vec<Named<F, D>> {
     in_light("textured", textured, &mut all);
     in_light("textured 4 times", textured.texture_scale(2), &mut all);
     in_light("clamped", clamped, &mut all);
+    in_light("mirrored", Material::mirrored(&texture), &mut all);
     let key = fixel::embedded_graphics::pixelcolor::raw::RawU16::new(TEXELS[17]).into();
     // One that turns a cut-out opaque again does not exist: its kind is of cut-outs.
     let cut_out = textured.masked(&Mask::new(&MASK, 4, 4));
@@ -134,6 +135,7 @@ fn all<F: BlendFormat<Word = u16>, D: DepthFormat>() -> Vec<Named<F, D>> {
     in_qualities("cut out in light", cut_out.lit(), &mut all);
     in_qualities("cut out, over", cut_out.alpha(77), &mut all);
     in_qualities("cut out by colour", clamped.cut_out(key).lit().faceted(), &mut all);
+    in_qualities("mirrored, cut out", Material::mirrored(&texture).masked(&Mask::new(&MASK, 4, 4)), &mut all);
     in_qualities("flat, vertices over", flat.vertex_alpha(), &mut all);
     in_qualities("textured, vertices added", textured.additive().vertex_alpha(), &mut all);
     in_qualities("clamped, vertices' door", clamped.screen_door().vertex_alpha(), &mut all);

@@ -30,6 +30,15 @@ pub trait PixelFormat: 'static {
     /// The word of three 8-bit channels.
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
 
+    /// The same words, if they are those of [`Rgb565`] on this machine: then loops that are compiled with this crate write them,
+    /// however the program is optimised.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn as_rgb565(_words: &mut [Self::Word]) -> Option<&mut [u16]> {
+        None
+    }
+
     /// Whether a word has room for 16 bits of a pass that is not the last: see [`PixelFormat::keep`].
     #[doc(hidden)]
     const KEEPS: bool = false;
@@ -88,6 +97,11 @@ impl PixelFormat for Rgb565 {
     #[inline]
     fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
         (u16::from(red) & 0xf8) << 8 | (u16::from(green) & 0xfc) << 3 | u16::from(blue) >> 3
+    }
+
+    #[inline]
+    fn as_rgb565(words: &mut [u16]) -> Option<&mut [u16]> {
+        Some(words)
     }
 
     const KEEPS: bool = true;

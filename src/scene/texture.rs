@@ -5,8 +5,9 @@ use core::fmt;
 /// A borrowed RGB565 picture of 2^w × 2^h texels, rows from the top, w and h from 0 to 10.
 ///
 /// Texel (i, j) covers the coordinates i … i + 1, j … j + 1. What lies beyond the borders is the material's choice: the texture again
-/// and again ([`Material::textured`](crate::Material::textured)), or its border texels
-/// ([`Material::clamped`](crate::Material::clamped)).
+/// and again ([`Material::textured`](crate::Material::textured)), its border texels
+/// ([`Material::clamped`](crate::Material::clamped)), or the texture turned round at each border
+/// ([`Material::mirrored`](crate::Material::mirrored)).
 ///
 /// ```
 /// use fixel::{Texture, texels};
@@ -131,6 +132,20 @@ impl<'a> Texture<'a> {
         self.texel(u, v)
     }
 
+    /// The texel at whole texel coordinates of any size, of the texture turned round at each border.
+    #[inline]
+    pub(crate) fn fetch_mirror(&self, u: i32, v: i32) -> u16 {
+        let [u, v] = self.mirrored(u, v);
+        self.fetch_repeat(u, v)
+    }
+
+    /// The texel of the texture that is seen at whole coordinates if it is turned round at each border, modulo its size.
+    #[inline]
+    pub(crate) fn mirrored(&self, u: i32, v: i32) -> [i32; 2] {
+        let turned = |at: i32, log2: u8| if at >> log2 & 1 == 0 { at } else { !at };
+        [turned(u, self.log2_width), turned(v, self.log2_height)]
+    }
+
     /// The nearest texel of the texture.
     #[inline]
     pub(crate) fn clamped(&self, u: i32, v: i32) -> [i32; 2] {
@@ -227,6 +242,9 @@ mod tests {
         assert_eq!(texture.fetch_repeat(-4, -1), 4);
         assert_eq!(texture.fetch_repeat(5, 2), 1);
         assert_eq!(texture.fetch_repeat(i32::MIN, i32::MAX), 4);
+        assert_eq!([-5, -1, 0, 3, 4, 7, 8].map(|u| texture.fetch_mirror(u, 0)), [3, 0, 0, 3, 3, 0, 0]);
+        assert_eq!([-2, -1, 0, 1, 2, 3].map(|v| texture.fetch_mirror(0, v)), [4, 0, 0, 4, 4, 0]);
+        assert_eq!(texture.fetch_mirror(i32::MIN, i32::MAX), 0);
         assert_eq!(texture.fetch_clamp(-1, 0), 0);
         assert_eq!(texture.fetch_clamp(i32::MAX, i32::MAX), 7);
         assert_eq!(texture.fetch_clamp(i32::MIN, 1), 4);

@@ -10,7 +10,6 @@
 //! With 8 fraction bits steps are cut towards zero. So after 16 pixels of a straight line a channel is off by at most 1/16 of
 //! 1/255, its unit. That is how long a line may be before it starts anew.
 
-use super::curve::Linear;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
 
@@ -40,17 +39,13 @@ pub(crate) trait Channels<const M: usize>: Copy {
         Self::pack(step.map(|step| shifted(step, Self::DROPPED)))
     }
 
-    /// The values at a pixel, from 8 integer and 24 fraction bits.
-    #[inline]
-    fn place_modular(channels: [u32; M]) -> Self {
-        Self::place(channels.map(|channel| (channel >> 8) as i32))
-    }
+    /// Red, green and blue, 0 … 255, from 8 integer and 24 fraction bits.
+    fn rgb_modular(channels: [u32; M]) -> [u32; 3];
 
-    /// Likewise, and the step.
+    /// The word of a pixel, from 8 integer and 24 fraction bits.
     #[inline]
-    fn modular(lines: [Linear; M]) -> [Self; 2] {
-        let step = Self::step(lines.map(|line| shifted(line.slope, 8)));
-        [Self::place_modular(lines.map(|line| line.at)), step]
+    fn word_modular<F: PixelFormat>(channels: [u32; M]) -> F::Word {
+        color::<F>(Self::rgb_modular(channels))
     }
 
     /// Red, green and blue, 0 … 255.
@@ -79,6 +74,16 @@ impl Channels<1> for Gray {
     #[inline]
     fn plus(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
+    }
+
+    #[inline]
+    fn rgb_modular([gray]: [u32; 1]) -> [u32; 3] {
+        [gray >> 24; 3]
+    }
+
+    #[inline]
+    fn word_modular<F: PixelFormat>([gray]: [u32; 1]) -> F::Word {
+        F::gray((gray >> 24) as u8)
     }
 
     #[inline]
@@ -112,6 +117,11 @@ impl Channels<3> for RedBlueGreen {
     }
 
     #[inline]
+    fn rgb_modular(channels: [u32; 3]) -> [u32; 3] {
+        channels.map(|channel| channel >> 24)
+    }
+
+    #[inline]
     fn rgb(self) -> [u32; 3] {
         [self.0 as u32 >> 24, self.1 as u32 >> 8, (self.0 as u32 >> 8) & 0xff]
     }
@@ -129,8 +139,8 @@ pub(crate) fn lit<F: PixelFormat>(texel: u16, light: [u32; 3]) -> F::Word {
     // 0 … 256, so that full light leaves a texel as it is.
     let [red, green, blue] = light.map(|light| light + (light >> 7));
     let texel = u32::from(texel);
-    let red = (((texel & 0xf800) * red) >> 8) & 0xf800;
-    let green = (((texel & 0x07e0) * green) >> 8) & 0x07e0;
-    let blue = ((texel & 0x001f) * blue) >> 8;
-    F::rgb565((red | green | blue) as u16)
+    let red = ((texel >> 11) * red) >> 8;
+    let green = ((texel >> 5 & 63) * green) >> 8;
+    let blue = ((texel & 31) * blue) >> 8;
+    F::rgb565((red << 11 | green << 5 | blue) as u16)
 }

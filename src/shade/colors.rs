@@ -5,13 +5,11 @@
 //! - Assumes: channels stay within 0 … 255.996 at every pixel.
 
 use super::channels::Channels;
-use super::curve::{Curve, Linear};
+use super::curve::{Curve, Ts};
 use super::fill::{Fill, FillRow, some_of};
-use super::inverses::inverse;
 use super::row::Row;
 use super::units::Units;
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::raster::ATTRIBUTES;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -29,6 +27,17 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Colors<M, F, C> {
         for pixel in pixels {
             *pixel = packed.word::<F>();
             packed = packed.plus(step);
+            black_box(());
+        }
+    }
+
+    /// With t at every pixel.
+    #[inline(always)]
+    fn each<const CHORDS: bool>(pixels: &mut [F::Word], curve: &Curve, mut ts: Ts<CHORDS>) {
+        let lines = some_of::<M, _>(&curve.lines, 0);
+        for pixel in pixels {
+            let t = ts.next();
+            *pixel = C::word_modular::<F>(lines.map(|line| line.value(t)));
             black_box(());
         }
     }
@@ -57,19 +66,12 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M,
 
     #[inline(never)]
     fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
-        let lines = some_of::<M, _>(&curve.lines, 0);
-        let (mut w, w_step) = (curve.w, curve.w_step);
-        for pixel in pixels {
-            let t = inverse(w);
-            *pixel = C::place_modular(lines.map(|line| line.value(t))).word::<F>();
-            w = w.wrapping_add(w_step);
-            black_box(());
-        }
+        Self::each(pixels, curve, Ts::<false>::new(curve));
     }
 
-    fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
-        let [packed, step] = C::modular(some_of(lines, 0));
-        Self::run(pixels, packed, step);
+    #[inline(never)]
+    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
+        Self::each(pixels, curve, Ts::<true>::new(curve));
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Curve {
 /// An attribute along a part of a row: linear in t. `at` is its value at t = 0, and `slope` its change over a unit of
 /// t, with 13 fraction bits in 1/w, 7 in n/w, and 9 in the n/w of `Exact`.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Linear {
+pub(crate) struct Linear {
     pub(crate) at: u32,
     pub(crate) slope: i32,
 }
@@ -43,6 +43,14 @@ impl Linear {
     #[inline(always)]
     pub(crate) fn value(self, t: u32) -> u32 {
         self.at.wrapping_add(t.wrapping_mul(self.slope as u32))
+    }
+}
+
+impl Linear {
+    /// Turned round: all bits of its values inverted.
+    #[inline(always)]
+    pub(crate) fn turned(self) -> Self {
+        Self { at: !self.at, slope: self.slope.wrapping_neg() }
     }
 }
 
@@ -78,6 +86,29 @@ pub(crate) fn distance(form: Form, w: u32, n: u32) -> u32 {
     match form {
         Form::Exact => n.wrapping_mul(exact_inverse(w)) >> (16 - EXACT_LOG2),
         _ => n.wrapping_mul(inverse(w)) >> (ONE_LOG2 - CHORD_LOG2),
+    }
+}
+
+/// t at one pixel after another: 1/w, or with `CHORDS` n/w, as chords have it.
+pub(crate) struct Ts<const CHORDS: bool> {
+    w: u32,
+    w_step: u32,
+    n: u32,
+    n_step: u32,
+}
+
+impl<const CHORDS: bool> Ts<CHORDS> {
+    #[inline(always)]
+    pub(crate) fn new(curve: &Curve) -> Self {
+        let Curve { w, w_step, n, n_step, .. } = *curve;
+        Self { w, w_step, n, n_step }
+    }
+
+    #[inline(always)]
+    pub(crate) fn next(&mut self) -> u32 {
+        let t = if CHORDS { distance(Form::Modular, self.w, self.n) } else { inverse(self.w) };
+        (self.w, self.n) = (self.w.wrapping_add(self.w_step), self.n.wrapping_add(self.n_step));
+        t
     }
 }
 

@@ -4,12 +4,12 @@
 //! - Out: the fill that these pixels get, or nothing where a texel is left out; how opaque vertices make pixels.
 //! - Assumes: the triangle was set up for the kind's inputs.
 
+use super::bordered::{Clamped, LitClamped, LitMirrored, Mirrored};
 use super::channels::lit;
 use super::fill::{Each, Fill};
 use super::kinds::sealed::Sealed;
 use super::kinds::{
-    Base, Clamped, ColorlessKind, Flat, Kind, LitClamped, LitKind, LitTextured, Opacity, TexelKind, Textured,
-    whole,
+    Base, ColorlessKind, Flat, Kind, LitKind, LitTextured, Opacity, TexelKind, Textured, whole,
 };
 use super::perspective::Perspective;
 use super::quality::Quality;
@@ -18,6 +18,7 @@ use super::shader::{Pixels, Varying};
 use crate::frame::PixelFormat;
 use crate::geometry::Inputs;
 use crate::raster::TriangleSetup;
+use crate::scene::Texture;
 use core::marker::PhantomData;
 
 /// A texture with texels that are left out.
@@ -32,9 +33,12 @@ impl<K> Sealed for CutOut<K> {}
 impl<K> Sealed for VertexAlpha<K> {}
 
 macro_rules! texel_kinds {
-    ($($kind:ident: $lit:ident $is_clamped:literal),*) => {$(
+    ($($kind:ident: $lit:ident $place:expr),*) => {$(
         impl TexelKind for $kind {
-            const IS_CLAMPED: bool = $is_clamped;
+            #[inline]
+            fn place(texture: &Texture<'_>, u: i32, v: i32) -> [i32; 2] {
+                $place(texture, u, v)
+            }
         }
 
         impl LitKind for CutOut<$kind> {
@@ -45,24 +49,33 @@ macro_rules! texel_kinds {
 }
 
 texel_kinds!(
-    Textured: LitTextured false,
-    LitTextured: LitTextured false,
-    Clamped: LitClamped true,
-    LitClamped: LitClamped true
+    Textured: LitTextured repeated,
+    LitTextured: LitTextured repeated,
+    Clamped: LitClamped Texture::clamped,
+    LitClamped: LitClamped Texture::clamped,
+    Mirrored: LitMirrored Texture::mirrored,
+    LitMirrored: LitMirrored Texture::mirrored
 );
+
+/// As it is: what fetches texels repeats them.
+fn repeated(_: &Texture<'_>, u: i32, v: i32) -> [i32; 2] {
+    [u, v]
+}
 
 impl ColorlessKind for Flat {}
 impl ColorlessKind for Textured {}
 impl ColorlessKind for Clamped {}
+impl ColorlessKind for Mirrored {}
 impl ColorlessKind for CutOut<Textured> {}
 impl ColorlessKind for CutOut<Clamped> {}
+impl ColorlessKind for CutOut<Mirrored> {}
 
 impl<K: TexelKind> CutOut<K> {
     /// The texel at coordinates of I16F16, if it is there.
     #[inline]
     fn texel(recipe: &Recipe<'_>, u: i32, v: i32) -> Option<u16> {
-        let (texture, [u, v]) = (&recipe.texture, [u >> 16, v >> 16]);
-        let [u, v] = if K::IS_CLAMPED { texture.clamped(u, v) } else { [u, v] };
+        let texture = &recipe.texture;
+        let [u, v] = K::place(texture, u >> 16, v >> 16);
         let texel = texture.fetch_repeat(u, v);
         let is_there = match &recipe.mask {
             Some(mask) => mask.is_there(u, v),

@@ -8,7 +8,7 @@
 //! [`Perspective`](super::perspective::Perspective), whatever the surface. A fill is called once for each curve, as a
 //! `dyn Fill`. So a program has one copy of these loops, and of each fill that a surface of it names.
 
-use super::curve::{CHORD, Chords, Curve, Linear, distance};
+use super::curve::{Curve, distance};
 use super::quality::Quality;
 use super::row::Row;
 use super::units::{Form, Units};
@@ -31,34 +31,8 @@ pub trait Fill<W> {
     /// With 1/w at every pixel; in the general forms n/w.
     fn table(&self, pixels: &mut [W], curve: &Curve);
 
-    /// At most [`CHORD`] pixels along a straight line, in the fill's units. Not of the general forms.
-    fn chord(&self, pixels: &mut [W], lines: &[Linear; ATTRIBUTES]);
-
-    /// Along chords: false if they are to be drawn [one by one](Fill::chord).
-    fn chords(&self, _pixels: &mut [W], _curve: &Curve) -> bool {
-        false
-    }
-}
-
-/// Hands on a curve's chords one by one.
-#[inline(never)]
-pub(crate) fn each_chord<W>(pixels: &mut [W], curve: &Curve, fill: &dyn Fill<W>) {
-    let mut chords = Chords::new(curve);
-    let last = pixels.len().wrapping_sub(1) / CHORD as usize;
-    for (number, eight) in pixels.chunks_mut(CHORD as usize).enumerate() {
-        let (t, rise) = if number < last { chords.next() } else { chords.last(eight.len() as u32 - 1) };
-        let lines = curve.lines.map(|line| Linear {
-            at: line.value(t),
-            slope: rise.wrapping_mul(slope_of_chord(line.slope)) as i32,
-        });
-        fill.chord(eight, &lines);
-    }
-}
-
-/// A curve's slope for steps of [`Chords`], which have 6 fraction bits more; cut towards zero.
-#[inline(always)]
-pub(crate) fn slope_of_chord(slope: i32) -> u32 {
-    super::packed::shifted(slope, 6) as u32
+    /// With n/w at every pixel, or at every eighth one and straight lines between. Not of the general forms.
+    fn chords(&self, _pixels: &mut [W], _curve: &Curve) {}
 }
 
 /// A fill of a small triangle's rows, some pixels of which may be hidden, from `N` attributes.
@@ -122,8 +96,6 @@ impl<const N: usize, Q: Quality, W, C: Fn([i32; N]) -> W> Fill<W> for Each<N, Q,
             black_box(());
         }
     }
-
-    fn chord(&self, _: &mut [W], _: &[Linear; ATTRIBUTES]) {}
 }
 
 impl<const N: usize, Q, W, C: Fn([i32; N]) -> W> FillRow<N> for Each<N, Q, W, C> {
@@ -150,10 +122,6 @@ impl<W: Copy> Fill<W> for Even<W> {
     }
 
     fn table(&self, pixels: &mut [W], _: &Curve) {
-        pixels.fill(self.0);
-    }
-
-    fn chord(&self, pixels: &mut [W], _: &[Linear; ATTRIBUTES]) {
         pixels.fill(self.0);
     }
 }

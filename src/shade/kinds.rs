@@ -16,9 +16,11 @@ use super::shader::{Pixels, Varying};
 use super::texels::Texels;
 use crate::frame::PixelFormat;
 use crate::geometry::Inputs;
+use crate::scene::Texture;
 use sealed::Sealed;
 
-/// A kind of [`Material`](crate::Material): [`Flat`], [`Gouraud`], [`Textured`], [`Clamped`], what [light](LitKind) makes of them,
+/// A kind of [`Material`](crate::Material): [`Flat`], [`Gouraud`], [`Textured`], [`Clamped`](crate::material::Clamped),
+/// [`Mirrored`](crate::material::Mirrored), what [light](LitKind) makes of them,
 /// and [`CutOut`](crate::material::CutOut) and [`VertexAlpha`](crate::material::VertexAlpha) of these.
 pub trait Kind: Sealed + 'static {
     /// Which attributes it reads.
@@ -59,9 +61,9 @@ pub trait LitKind: Kind {
 
 /// A [`Kind`] of texels: those can be [cut out](crate::Material::cut_out).
 pub trait TexelKind: Kind {
-    /// Whether border texels are seen beyond the texture's borders.
+    /// The texel of the texture at whole coordinates, modulo its size.
     #[doc(hidden)]
-    const IS_CLAMPED: bool;
+    fn place(texture: &Texture<'_>, u: i32, v: i32) -> [i32; 2];
 }
 
 /// A [`Kind`] that does not need the vertices' colours, so that they can say [how opaque](crate::Material::vertex_alpha) it is.
@@ -100,22 +102,12 @@ pub struct Textured;
 #[derive(Clone, Copy, Debug)]
 pub struct LitTextured;
 
-/// A texture whose border texels are seen beyond its borders.
-#[derive(Clone, Copy, Debug)]
-pub struct Clamped;
-
-/// A texture whose border texels are seen beyond its borders, in light.
-#[derive(Clone, Copy, Debug)]
-pub struct LitClamped;
-
 pub(crate) mod sealed {
     pub trait Sealed {}
     impl Sealed for super::Flat {}
     impl Sealed for super::Gouraud {}
     impl Sealed for super::Textured {}
     impl Sealed for super::LitTextured {}
-    impl Sealed for super::Clamped {}
-    impl Sealed for super::LitClamped {}
 }
 
 impl LitKind for Flat {
@@ -213,85 +205,17 @@ impl Kind for LitTextured {
     }
 }
 
-impl LitKind for Clamped {
-    type Lit = LitClamped;
-    const BASE: Base = Base::White;
-}
-
-impl Kind for Clamped {
-    const INPUTS: Inputs = Inputs::Uv;
-    const IS_PACKED: bool = true;
-    const HAS_SMALL: bool = false;
-
-    fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
-        let [u, v] = texel_of(varying);
-        F::rgb565(recipe.texture.fetch_clamp(u, v))
-    }
-
-    #[inline]
-    fn paint<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &Recipe<'_>, pixels: P) {
-        let texture = &recipe.texture;
-        if is_repeated_alike::<F, Q, P>(recipe, &pixels) {
-            return Textured::paint::<F, Q, P>(recipe, pixels);
-        }
-        pixels.shade_rows(|[u, v]| F::rgb565(texture.fetch_clamp(u >> 16, v >> 16)));
-    }
-}
-
-impl LitKind for LitClamped {
-    type Lit = Self;
-    const BASE: Base = Base::Same;
-}
-
-impl Kind for LitClamped {
-    const INPUTS: Inputs = Inputs::UvColor;
-    const IS_PACKED: bool = true;
-    const HAS_SMALL: bool = false;
-
-    fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
-        let [u, v] = texel_of(varying);
-        lit::<F>(recipe.texture.fetch_clamp(u, v), channels_of(varying))
-    }
-
-    #[inline]
-    fn paint<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &Recipe<'_>, pixels: P) {
-        let texture = &recipe.texture;
-        if is_repeated_alike::<F, Q, P>(recipe, &pixels) {
-            return LitTextured::paint::<F, Q, P>(recipe, pixels);
-        }
-        if pixels.is_gray() {
-            pixels.shade_rows(|[u, v, light]| {
-                lit::<F>(texture.fetch_clamp(u >> 16, v >> 16), whole([light; 3]))
-            });
-        } else {
-            pixels.shade_rows(|[u, v, light @ ..]: [i32; 5]| {
-                lit::<F>(texture.fetch_clamp(u >> 16, v >> 16), whole(light))
-            });
-        }
-    }
-}
-
-/// Whether a triangle of a clamped texture shows none of what is beyond its borders, as most do: then the loops of repeated ones
-/// draw it, in an eighth of the time.
-#[inline]
-fn is_repeated_alike<F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(
-    recipe: &Recipe<'_>,
-    pixels: &P,
-) -> bool {
-    !Q::EVERY_PIXEL && recipe.scale_log2 == 0 && pixels.uv_are_inside(recipe.texture.log2())
-}
-
 /// Channels of I16F16, 0 … 255.996, without their fractions.
 #[inline]
 pub(super) fn whole(channels: [i32; 3]) -> [u32; 3] {
     channels.map(|channel| channel as u32 >> 16)
 }
 
-fn channels_of(varying: &Varying) -> [u32; 3] {
+pub(super) fn channels_of(varying: &Varying) -> [u32; 3] {
     whole(varying.color.map(|channel| channel.to_bits()))
 }
 
 /// The column and the row of a texel.
-fn texel_of(varying: &Varying) -> [i32; 2] {
+pub(super) fn texel_of(varying: &Varying) -> [i32; 2] {
     [varying.u, varying.v].map(|at| at.to_bits() >> 16)
 }

@@ -5,9 +5,10 @@
 //! - Assumes: nothing.
 
 use super::blend::{Additive, Layer, Multiply, Opaque, ScreenDoor};
+use super::bordered::{Clamped, Mirrored};
 use super::cover::Layering;
 use super::cut_out::{CutOut, VertexAlpha};
-use super::kinds::{Base, Clamped, ColorlessKind, Flat, Gouraud, Kind, LitKind, TexelKind, Textured};
+use super::kinds::{Base, ColorlessKind, Flat, Gouraud, Kind, LitKind, TexelKind, Textured};
 use super::quality::{Affine, Exact, Quality, QuarterPixel};
 use super::recipe::Recipe;
 use super::shader::{Pixels, Shader, Varying};
@@ -106,10 +107,21 @@ impl<'a> Material<'a, Textured> {
 }
 
 impl<'a> Material<'a, Clamped> {
-    /// A texture whose border texels are seen beyond its borders. For labels and decals. A triangle whose coordinates stay inside the
-    /// texture is drawn as fast as one that [repeats](Material::textured), but for small ones; any other takes several times as long.
+    /// A texture whose border texels are seen beyond its borders. For labels and decals. Rows that cross a border are split there: they
+    /// take about as long as if the texture [repeated](Material::textured), but for small triangles, and for coordinates of more than
+    /// ±2046 texels, which take several times as long.
     #[must_use]
     pub const fn clamped(texture: &Texture<'a>) -> Self {
+        Self::new(Recipe { texture: *texture, ..Recipe::plain(0) })
+    }
+}
+
+impl<'a> Material<'a, Mirrored> {
+    /// A texture that is turned round at each of its borders, so that it repeats without a seam, every other time as its mirror image.
+    /// It takes about as long as one that is [clamped](Material::clamped); where it repeats within 16 pixels or less of a row, up to
+    /// three times as long.
+    #[must_use]
+    pub const fn mirrored(texture: &Texture<'a>) -> Self {
         Self::new(Recipe { texture: *texture, ..Recipe::plain(0) })
     }
 }

@@ -3,6 +3,8 @@
 mod bent;
 mod blend;
 mod blended;
+mod border;
+mod bordered;
 mod channels;
 mod colors;
 mod cover;
@@ -14,13 +16,16 @@ mod fragment;
 mod inverses;
 mod kinds;
 mod layered;
+mod light;
 mod lit_texels;
+mod loops;
 mod material;
 mod opaque;
 mod packed;
 mod paint;
 mod patch;
 mod perspective;
+mod pieces;
 mod quality;
 mod recipe;
 mod row;
@@ -33,12 +38,11 @@ mod units;
 mod visible;
 
 pub use blend::{Additive, Layer, LayerIn, Masked, Multiply, Opaque, Over, ScreenDoor};
+pub use bordered::{Clamped, LitClamped, LitMirrored, Mirrored};
 pub(crate) use cover::{Cover, InFog, Layers};
 pub use cut_out::{CutOut, VertexAlpha};
 pub use fog::Fog;
-pub use kinds::{
-    Clamped, ColorlessKind, Flat, Gouraud, Kind, LitClamped, LitKind, LitTextured, TexelKind, Textured,
-};
+pub use kinds::{ColorlessKind, Flat, Gouraud, Kind, LitKind, LitTextured, TexelKind, Textured};
 pub use material::Material;
 pub(crate) use patch::is_small;
 pub use quality::{Affine, Exact, Quality, QuarterPixel};

@@ -4,6 +4,7 @@
 //! - Out: words and depths where the triangle is seen.
 //! - Assumes: the triangle was set up for the shader.
 
+use super::border::uv_bits;
 use super::cover::Cover;
 use super::fill::{Even, Fill, FillRow};
 use super::layered::draw_some;
@@ -24,6 +25,10 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
 
     fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
         self.setup.uv_are_inside(log2)
+    }
+
+    fn uv_bits(&self) -> [u32; 2] {
+        uv_bits(self.setup)
     }
 
     #[inline]

@@ -21,7 +21,7 @@
 //!   near end, n/w from the same table at every eighth pixel, and a straight line between. u = u_near + s·n/w, s
 //!   being its change over the first pixel. A chord of L pixels is off by L²/4h, h being how far the horizon is
 //!   there: by up to ¼, of which the errors of its ends take some.
-//! - *Distances* (shaders of users, textures that do not repeat, and [`Exact`](super::Exact)): n/w at every pixel. It
+//! - *Distances* (shaders of users, and [`Exact`](super::Exact)): n/w at every pixel. It
 //!   is off by n/1024 pixels at most, and n is at most 63; for `Exact` one step of Newton's iteration makes that
 //!   0.005.
 //! - *Straight*, where w changes so little that the tangent at the near end is off by n²/D ≤ 1/8 pixel.
@@ -38,17 +38,18 @@
 //! at 1024×1024.
 
 use super::curve::{Curve, Linear};
-use super::fill::{Fill, each_chord};
+use super::fill::Fill;
 use super::inverses::ONE_LOG2;
 use super::units::{Form, Units};
 use crate::math::recip::looked_up;
 use crate::num::{IS_ARMV6M, mul_17, mul_high, normalise};
-use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup};
+use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 
 /// The step of w, 32 fraction bits, where the horizon is 176 pixels away.
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
 
 /// How a part of a row is drawn. `Table` looks 1/w up at every pixel; in the general forms n/w, which the head calls distances.
+#[derive(PartialEq)]
 pub(super) enum Way {
     Straight,
     Table,
@@ -121,26 +122,28 @@ impl<'a> Perspective<'a> {
         if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> self.zeros == q {
             return (mantissa, self.zeros);
         }
-        let mantissa;
-        (mantissa, self.zeros) = normalise(q);
-        (mantissa, self.zeros)
+        let (mantissa, zeros) = normalise(q);
+        if IS_ARMV6M {
+            self.zeros = zeros;
+        }
+        (mantissa, zeros)
     }
 
     /// Draws pixels of a row, the first of which is (x, y).
     #[inline(always)]
     pub(crate) fn draw<W>(&mut self, x: i32, y: i32, pixels: &mut [W], fill: &dyn Fill<W>) {
-        match (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32) {
-            Way::Straight => fill.straight(pixels, &self.curve),
-            Way::Table => fill.table(pixels, &self.curve),
-            Way::Chords => self.draw_chords(pixels, fill),
-            Way::None => self.draw_parts(x, y, pixels, fill),
+        // One after another: a table of jumps takes longer.
+        let way = (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32);
+        if way == Way::Table {
+            return fill.table(pixels, &self.curve);
         }
-    }
-
-    fn draw_chords<W>(&self, pixels: &mut [W], fill: &dyn Fill<W>) {
-        if !fill.chords(pixels, &self.curve) {
-            each_chord(pixels, &self.curve, fill);
+        if way == Way::Straight {
+            return fill.straight(pixels, &self.curve);
         }
+        if way == Way::Chords {
+            return fill.chords(pixels, &self.curve);
+        }
+        self.draw_parts(x, y, pixels, fill);
     }
 
     /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
@@ -167,7 +170,7 @@ impl<'a> Perspective<'a> {
             }
             match way {
                 Way::Table => fill.table(run, &self.curve),
-                Way::Chords => self.draw_chords(run, fill),
+                Way::Chords => fill.chords(run, &self.curve),
                 _ => fill.straight(run, &self.curve),
             }
             (count, pixels) = (rest.len(), rest);
@@ -242,8 +245,10 @@ impl<'a> Perspective<'a> {
         if count > 1 {
             set_table(&setup.attributes[1], &near, ups[1].into(), &mut lines[1]);
         }
-        for i in 2..count.min(ATTRIBUTES) {
-            set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+        if count > 2 {
+            for i in 2..count.min(ATTRIBUTES) {
+                set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+            }
         }
         Way::Table
     }
@@ -317,8 +322,7 @@ fn set_table(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
     let above = attribute.divided(value, near.reciprocal, near.zeros);
     let (u, way) = (attribute.least.wrapping_add(above), above.wrapping_sub(attribute.horizon().0));
     // Cut towards zero.
-    let below_one = ((way >> 31) as u32 >> ((up + (31 - ONE_LOG2)) & 31)) >> 1;
-    let slope = way.wrapping_add_unsigned(below_one) >> ((ONE_LOG2 - up) & 31);
+    let slope = towards_zero(way >> ((ONE_LOG2 - up) & 31));
     *line = Linear { at: (u << (up & 31)).wrapping_sub(slope << ONE_LOG2) as u32, slope };
 }
 

@@ -4,6 +4,7 @@
 //! - Out: the same for a shader, as `Pixels` that it fills.
 //! - Assumes: nothing hides a pixel.
 
+use super::border::uv_bits;
 use super::fill::{Fill, FillRow};
 use super::perspective::Perspective;
 use super::quality::Quality;
@@ -27,6 +28,10 @@ impl<W: Copy, Q: Quality> Pixels<W, Q> for Run<'_, W> {
 
     fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
         self.span.setup.uv_are_inside(log2)
+    }
+
+    fn uv_bits(&self) -> [u32; 2] {
+        uv_bits(self.span.setup)
     }
 
     #[inline]

@@ -198,6 +198,10 @@ pub trait Pixels<W, Q: Quality>: Sealed + Sized {
     #[doc(hidden)]
     fn uv_are_inside(&self, log2: [u32; 2]) -> bool;
 
+    /// The integer bits, with a sign, that u and v take.
+    #[doc(hidden)]
+    fn uv_bits(&self) -> [u32; 2];
+
     #[doc(hidden)]
     fn fill_some(self, fill: &dyn Fill<Option<W>>);
 

@@ -5,257 +5,51 @@
 //! - Assumes: the curve is in the texture's units: u of 2^a texels has a integer bits and 32 − a fraction bits, and v likewise. Of
 //!   one texel it has one integer bit, which is left out.
 //!
-//! Along straight lines u and v are packed in one word, so that one addition steps both. For 2^a × 2^b texels the lower half of the
-//! word holds u with a integer and 16 − a fraction bits, the upper half v with b and 16 − b, and both repeat by themselves.
-//! Masking leaves the integer bits, and one multiplication moves those of u below those of v:
-//!
-//! ```text
-//!   vvvvvv00 00000000 uuuuuu00 00000000  · (1 + 2^(16 − b))  >> (32 − a − b)  =  vvvvvvuu uuuu
-//! ```
-//!
-//! With the number of texels an array's, the compiler sees that the index cannot be outside it: 9 cycles a pixel on a
-//! Cortex-M0+ where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and whatever has as many.
-//!
-//! A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So lines are so short,
-//! before they start anew from 32 bits, that all of that is 1/16 texel at most. [`Packing`](crate::raster::Packing)
-//! has the exact sum: it keeps away the wrong texel at a whole coordinate, and the opposite border.
-//!
-//! With 1/w at every pixel u and v have a word each. On a Cortex-M0+, which has few registers, a first pass leaves 1/w in the
-//! pixels, and a second makes texels of them: 31 cycles a pixel, where one loop takes 35. On a Cortex-M4 one loop takes 15.
+//! The [loops](super::loops) are chosen here: for [`Rgb565`](embedded_graphics::pixelcolor::Rgb565) those that are compiled with this crate.
 
-use super::curve::{CHORD, Chords, Curve, Linear, MOST_IN_CHORDS};
-use super::fill::{Fill, FillRow, plus, slope_of_chord};
-use super::inverses::{inverse, leave};
-use super::packed::{
-    downs, integer_bits, lines_of, longest_row_of, packed_from, packed_step, shifted, sized, turned,
-};
+use super::curve::Curve;
+use super::fill::{Fill, FillRow, plus};
+use super::light::FillTexels;
+use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
+use super::packed::{downs, integer_bits, longest_row_of, packed_from, packed_step, shifted};
 use super::row::Row;
 use super::units::Units;
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::num::IS_ARMV6M;
-use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
-use core::hint::black_box;
 use core::marker::PhantomData;
 
 /// Texels of a texture that repeats.
 pub(crate) struct Texels<'a, F> {
-    texture: &'a Texture<'a>,
-    is_packed: bool,
-    square: Square<'a>,
+    loops: Loops<'a>,
     format: PhantomData<F>,
 }
+impl<'a, F> core::ops::Deref for Texels<'a, F> {
+    type Target = Loops<'a>;
 
-/// A texture whose loops know its size.
-#[derive(Clone, Copy)]
-enum Square<'a> {
-    Of64(&'a [[u16; 64]; 64]),
-    Of32(&'a [[u16; 32]; 32]),
-    Any,
+    #[inline]
+    fn deref(&self) -> &Loops<'a> {
+        &self.loops
+    }
 }
-
-/// Chords of packed coordinates: where each begins, and its step.
-type Nodes = [[u32; 2]; MOST_IN_CHORDS as usize / CHORD as usize + 1];
 
 impl<'a, F: PixelFormat> Texels<'a, F> {
     #[inline]
     pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32) -> Self {
-        let ([a, b], rows) = (texture.log2(), texture.texels());
-        // 4096 texels are 64 rows of 64, 1024 are 32 of 32.
-        let square = match (rows.as_chunks().0.try_into(), rows.as_chunks().0.try_into()) {
-            (Ok(rows), _) if a == b => Square::Of64(rows),
-            (_, Ok(rows)) if a == b => Square::Of32(rows),
-            _ => Square::Any,
-        };
-        Self { texture, is_packed: texture.is_packable(scale_log2), square, format: PhantomData }
+        Self { loops: Loops::new(texture, scale_log2), format: PhantomData }
     }
+}
 
-    /// Along a straight line, from packed coordinates on.
+impl<F: PixelFormat> FillTexels<F> for Texels<'_, F> {
     #[inline]
-    fn line_sized<const COUNT: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        texels: &[u16; COUNT],
-        mut packed: u32,
-        step: u32,
-    ) {
-        let texel = sized(self.texture, texels);
-        let mut draw = |pixel: &mut F::Word| {
-            *pixel = F::rgb565(texel(packed));
-            packed = packed.wrapping_add(step);
-        };
-        let (fours, rest) = pixels.as_chunks_mut::<4>();
-        for four in fours {
-            four.iter_mut().for_each(&mut draw);
-        }
-        rest.iter_mut().for_each(draw);
-    }
-
-    /// Likewise, of any size.
-    #[inline(never)]
-    fn line_checked(&self, pixels: &mut [F::Word], mut packed: u32, step: u32) {
-        // A copy stays in registers.
-        let texture = *self.texture;
-        for pixel in pixels {
-            *pixel = F::rgb565(texture.fetch_packed(packed));
-            packed = packed.wrapping_add(step);
-            black_box(());
-        }
-    }
-
-    /// Hands on blocks so short that truncated steps do not matter.
-    #[inline(always)]
-    fn in_blocks(&self, mut pixels: &mut [F::Word], line: &Curve, run: impl Fn(&mut [F::Word], u32, u32)) {
-        let [a, b] = self.texture.log2();
-        let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
-        let (mut u, mut v) = (u as i32, v as i32);
-        // After 64 pixels a step cut to 10 fraction bits is off by 1/16 texel. Large textures have fewer fraction bits.
-        let log2 = if self.texture.is_large() { 3 } else { 6 };
-        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
-        loop {
-            let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
-            run(block, packed_from([u >> a, v >> b], u_step), step);
-            if rest.is_empty() {
-                return;
-            }
-            pixels = rest;
-            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
-        }
-    }
-
-    /// Along a straight line of coordinates that are not packed.
-    #[inline(never)]
-    fn line_unpacked(&self, pixels: &mut [F::Word], line: &Curve) {
-        let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
-        let (texture, mut at) = (*self.texture, [u as i32, v as i32]);
-        for pixel in pixels {
-            *pixel = F::rgb565(texture.fetch_repeat(at[0] >> 16, at[1] >> 16));
-            at = plus(at, [u_step, v_step]);
-            black_box(());
-        }
-    }
-
-    /// Packs start and step of each chord.
-    #[inline(never)]
-    fn nodes<'n>(&self, count: usize, curve: &Curve, nodes: &'n mut Nodes) -> &'n [[u32; 2]] {
-        let [u, v, ..] = curve.lines;
-        let steps = [u, v].map(|line| slope_of_chord(line.slope));
-        let mut chords = Chords::new(curve);
-        let Some((last, eights)) =
-            nodes.get_mut(..count.div_ceil(CHORD as usize)).and_then(<[_]>::split_last_mut)
-        else {
-            return &[];
-        };
-        let node = |(t, rise): (u32, u32)| {
-            packed_chord([u, v].map(|line| line.value(t)), steps.map(|step| rise.wrapping_mul(step) as i32))
-        };
-        for eight in eights {
-            *eight = node(chords.next());
-            black_box(());
-        }
-        *last = node(chords.last((count - 1) as u32 & (CHORD - 1)));
-        nodes
+    fn integer_bits(&self) -> [u32; 2] {
+        integer_bits(self.texture)
     }
 
     #[inline]
-    fn chords_sized<const COUNT: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        texels: &[u16; COUNT],
-        nodes: &[[u32; 2]],
-    ) {
-        let texel = sized(self.texture, texels);
-        let (eights, last) = pixels.as_chunks_mut::<{ CHORD as usize }>();
-        let mut nodes = nodes.iter();
-        for (eight, &[mut packed, step]) in eights.iter_mut().zip(&mut nodes) {
-            for pixel in eight {
-                *pixel = F::rgb565(texel(packed));
-                packed = packed.wrapping_add(step);
-            }
-        }
-        if let Some(&[packed, step]) = nodes.next() {
-            self.line_sized(last, texels, packed, step);
-        }
-    }
-
-    /// With 1/w at every pixel, of 2^`A` × 2^`A` texels.
-    #[inline(always)]
-    fn table_sized<const A: u32, const SIDE: usize>(
-        &self,
-        pixels: &mut [F::Word],
-        texels: &[[u16; SIDE]; SIDE],
-        curve: &Curve,
-    ) {
-        let shift = 32 - A;
-        let [u, v, ..] = curve.lines;
-        self.table_of(pixels, curve, [u, v], move |u, v| {
-            texels[(v >> shift) as usize & (SIDE - 1)][(u >> shift) as usize & (SIDE - 1)]
-        });
-    }
-
-    #[inline(always)]
-    fn table_of(
-        &self,
-        pixels: &mut [F::Word],
-        curve: &Curve,
-        [u, v]: [Linear; 2],
-        texel: impl Fn(u32, u32) -> u16,
-    ) {
-        let word = |t: u32| F::rgb565(texel(u.value(t), v.value(t)));
-        if IS_ARMV6M && F::KEEPS {
-            in_passes::<F>(pixels, curve, word);
-        } else {
-            at_once::<F>(pixels, curve, word);
-        }
-    }
-
-    #[inline(never)]
-    fn table_32(&self, pixels: &mut [F::Word], texels: &[[u16; 32]; 32], curve: &Curve) {
-        self.table_sized::<5, 32>(pixels, texels, curve);
-    }
-
-    #[inline(never)]
-    fn table_any(&self, pixels: &mut [F::Word], curve: &Curve) {
-        let ([a, _], texels) = (self.texture.log2(), self.texture.texels());
+    fn texel(&self, [u, v]: [u32; 2]) -> u16 {
         let [u_down, v_down] = downs(self.texture);
-        self.table_of(pixels, curve, lines_of(self.texture, &curve.lines), |u, v| {
-            let index = (v >> v_down) << a | u >> u_down;
-            texels.get(index as usize).copied().unwrap_or_default()
-        });
+        self.texture.fetch_repeat((u >> u_down) as i32, (v >> v_down) as i32)
     }
-}
-
-/// Words made of 1/w, which a first pass leaves in the pixels: 8.3 cycles a pixel on a Cortex-M0+, and 22.9 for the second.
-#[inline(always)]
-fn in_passes<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(u32) -> F::Word) {
-    leave::<F>(pixels, curve.w, curve.w_step);
-    let (fours, rest) = pixels.as_chunks_mut::<4>();
-    for four in fours {
-        four.iter_mut().for_each(|pixel| *pixel = word(F::kept(*pixel).into()));
-        black_box(());
-    }
-    for pixel in rest {
-        *pixel = word(F::kept(*pixel).into());
-        black_box(());
-    }
-}
-
-/// The same in one loop: 15 cycles a pixel on a Cortex-M4, where it is not unrolled.
-#[inline(always)]
-fn at_once<F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve, word: impl Fn(u32) -> F::Word) {
-    let (mut w, w_step) = (curve.w, curve.w_step);
-    for pixel in pixels {
-        *pixel = word(inverse(w));
-        w = w.wrapping_add(w_step);
-        black_box(());
-    }
-}
-
-/// A chord from a place, in units of 32 bits, and its step; as a packed place and step, both rounded down.
-#[inline(always)]
-pub(super) fn packed_chord([u, v]: [u32; 2], [u_step, v_step]: [i32; 2]) -> [u32; 2] {
-    const UPPER: u32 = 0xffff_0000;
-    [v & UPPER | u >> 16, (v_step as u32 & UPPER).wrapping_add_signed(u_step >> 16)]
 }
 
 impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
@@ -263,59 +57,27 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
         Units::modular(integer_bits(self.texture))
     }
 
-    #[inline(never)]
+    #[inline]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
-        if !self.is_packed {
-            return self.line_unpacked(pixels, line);
-        }
-        let texels = self.texture.texels();
-        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_sized(block, texels, packed, step));
-        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_sized(block, texels, packed, step));
-        } else {
-            self.in_blocks(pixels, line, |block, packed, step| self.line_checked(block, packed, step));
+        match F::as_rgb565(pixels) {
+            Some(pixels) => straight_in_rgb565(&self.loops, pixels, line),
+            None => self.loops.straight::<F>(pixels, line),
         }
     }
 
-    #[inline(never)]
+    #[inline]
     fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
-        match self.square {
-            Square::Of64(texels) => self.table_sized::<6, 64>(pixels, texels, curve),
-            Square::Of32(texels) => self.table_32(pixels, texels, curve),
-            Square::Any => self.table_any(pixels, curve),
+        match F::as_rgb565(pixels) {
+            Some(pixels) => table_in_rgb565(&self.loops, pixels, curve),
+            None => self.loops.table::<F>(pixels, curve),
         }
     }
 
-    #[inline(never)]
-    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) -> bool {
-        if !self.is_packed || self.texture.is_large() {
-            return false;
-        }
-        let mut nodes = Nodes::default();
-        let nodes = self.nodes(pixels.len(), curve, &mut nodes);
-        let texels = self.texture.texels();
-        if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
-        } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels) {
-            self.chords_sized(pixels, texels, nodes);
-        } else {
-            for (eight, &[packed, step]) in pixels.chunks_mut(CHORD as usize).zip(nodes) {
-                self.line_checked(eight, packed, step);
-            }
-        }
-        true
-    }
-
-    fn chord(&self, pixels: &mut [F::Word], lines: &[Linear; ATTRIBUTES]) {
-        let [u, v, ..] = lines;
-        let [u_down, v_down] = downs(self.texture);
-        let (texture, mut at) = (*self.texture, [u.at, v.at]);
-        for pixel in pixels {
-            let [u_at, v_at] = [at[0] >> u_down, at[1] >> v_down];
-            *pixel = F::rgb565(texture.fetch_repeat(u_at as i32, v_at as i32));
-            at = [at[0].wrapping_add_signed(u.slope), at[1].wrapping_add_signed(v.slope)];
-            black_box(());
+    #[inline]
+    fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
+        match F::as_rgb565(pixels) {
+            Some(pixels) => chords_in_rgb565(&self.loops, pixels, curve),
+            None => self.loops.chords::<F>(pixels, curve),
         }
     }
 }
@@ -346,6 +108,9 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use super::super::curve::Linear;
+    use super::super::loops::{at_once, in_passes};
+    use super::super::packed::lines_of;
     use super::*;
     use crate::frame::BigEndian;
     use embedded_graphics::pixelcolor::Rgb565;
@@ -383,8 +148,8 @@ pub(super) mod tests {
             F::rgb565(texture.fetch_repeat((u.value(t) >> u_down) as i32, (v.value(t) >> v_down) as i32))
         };
         let (mut passes, mut once) = (vec![1; count], vec![2; count]);
-        in_passes::<F>(&mut passes, curve, word);
-        at_once::<F>(&mut once, curve, word);
+        in_passes::<false, F>(&mut passes, curve, word);
+        at_once::<false, F>(&mut once, curve, word);
         [passes, once]
     }
 

@@ -31,6 +31,12 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
 ) {
     let Cover { setup, rows, window, origin, width, pixels, depth, .. } = cover;
     let (setup, origin, width) = (*setup, *origin, *width);
+    // So that both are known to be as long.
+    let length = if D::ALWAYS_PASSES { pixels.len() } else { pixels.len().min(depth.len()) };
+    let Some(pixels) = pixels.get_mut(..length) else {
+        return;
+    };
+    let depth = depth.get_mut(..length).unwrap_or_default();
     rows.each(window, |y, start, end| {
         let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
         let count = (end - start) as usize;

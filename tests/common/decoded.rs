@@ -108,12 +108,40 @@ pub(crate) struct Case {
     /// The index of its texture.
     pub(crate) texture: usize,
     pub(crate) scale: u32,
-    /// Whether the texture is clamped, or repeats.
-    pub(crate) clamp: bool,
+    pub(crate) beyond: Beyond,
     pub(crate) surface: Surface,
     pub(crate) depth: bool,
     /// Which pixels something nearer hides, in pieces of so many pixels.
     pub(crate) hidden: (u64, i32),
+}
+
+/// What is seen beyond a texture's borders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beyond {
+    Repeated,
+    Clamped,
+    Mirrored,
+}
+
+impl Beyond {
+    pub(crate) const ALL: [Self; 3] = [Self::Repeated, Self::Clamped, Self::Mirrored];
+
+    /// Most often the first.
+    pub(crate) fn any() -> impl Strategy<Value = Self> {
+        prop::sample::select(&[0, 0, 0, 1, 2][..]).prop_map(|i: usize| Self::ALL[i])
+    }
+
+    /// The texel at a place in a texture without end, along an axis.
+    pub(crate) fn texel(self, place: i64, side: i64) -> i64 {
+        match self {
+            Self::Repeated => place.rem_euclid(side),
+            Self::Clamped => place.clamp(0, side - 1),
+            Self::Mirrored => {
+                let place = place.rem_euclid(2 * side);
+                place.min(2 * side - 1 - place)
+            }
+        }
+    }
 }
 
 impl Case {
@@ -206,16 +234,17 @@ fn texels() -> impl Strategy<Value = Texels> {
 
 impl Texels {
     /// At the corners, in units of 2⁻¹⁶.
-    fn corners(&self, extent: f64, side_log2: u32, scale: u32, clamp: bool, whole: bool) -> [i32; 3] {
+    fn corners(&self, extent: f64, side_log2: u32, scale: u32, beyond: Beyond, whole: bool) -> [i32; 3] {
         let (side, scaled) = (f64::from(1 << side_log2), f64::from(1 << scale));
         // `texture_scale` is for textures that repeat. Others are shown where the whole range fits 32768 texels: beyond that
         // coordinates begin anew.
-        let limit = if clamp { f64::min(8192.0, 16000.0 / scaled) } else { 8192.0 };
+        let repeats = beyond == Beyond::Repeated;
+        let limit = if !repeats { f64::min(8192.0, 16000.0 / scaled) } else { 8192.0 };
         let slope = (self.slope * f64::from(side_log2 + 6) - 5.0).exp2();
         // One in 16 is the same all over.
         let range = if self.third == 1.0 && self.slope < 0.3 { 0.0 } else { slope * extent / scaled };
         let range = range.min(2.0 * limit);
-        let low = if self.anywhere && !clamp {
+        let low = if self.anywhere && repeats {
             -limit + (2.0 * limit - range) * self.base[0]
         } else {
             side / scaled * self.base[0] - range * self.base[1]
@@ -243,12 +272,14 @@ pub(crate) fn case(family: Family, straight: bool) -> impl Strategy<Value = Case
     let shapes = strips(family).prop_flat_map(move |strip| (Just(strip), shape(family, strip)));
     let ratios = if straight { 0..1 } else { 1..RATIOS.len() };
     let near = (direction(family), ratios, prop_oneof![Just(0.0), 0.0..=1.0_f64]);
-    let kind = (0..TEXTURES.len(), 0..=8_u32, prop::bool::weighted(0.25), 0..SURFACES.len());
+    let kind = (0..TEXTURES.len(), 0..=8_u32, Beyond::any(), 0..SURFACES.len());
     let pieces = prop::sample::select(&[1, 2, 5, 12, 40, 200][..]);
     let hidden = (prop_oneof![Just(0_u64), any::<u64>()], pieces, any::<bool>());
     (shapes, near, [texels(), texels()], kind, hidden).prop_map(
         move |((strip, places), (angle, ratio, farther), uv, kind, (pattern, piece, depth))| {
-            let (texture, scale, clamp, surface) = kind;
+            let (texture, scale, beyond, surface) = kind;
+            // Others than those that repeat have loops of their own where they are not scaled.
+            let scale = if beyond == Beyond::Repeated { scale } else { scale.saturating_sub(6) };
             let q = distances(places, angle, RATIOS[ratio], farther);
             let span = |of: fn(Place) -> i32| {
                 let at = places.map(of);
@@ -257,7 +288,7 @@ pub(crate) fn case(family: Family, straight: bool) -> impl Strategy<Value = Case
             let extent = f64::from(span(|(x, _)| x).max(span(|(_, y)| y)).max(16)) / 16.0;
             let whole = family == Family::Whole;
             let [u, v] =
-                [0, 1].map(|axis| uv[axis].corners(extent, TEXTURES[texture][axis], scale, clamp, whole));
+                [0, 1].map(|axis| uv[axis].corners(extent, TEXTURES[texture][axis], scale, beyond, whole));
             let blue = if SURFACES[surface] == Surface::Colored { 0xff_8000 } else { 0xff_0000 };
             let corner = |i: usize| {
                 let (x, y) = places[i];
@@ -265,7 +296,7 @@ pub(crate) fn case(family: Family, straight: bool) -> impl Strategy<Value = Case
             };
             let triangle = Triangle([0, 1, 2].map(corner));
             let (surface, hidden) = (SURFACES[surface], (pattern, piece));
-            Case { strip, triangle, ratio, texture, scale, clamp, surface, depth, hidden }
+            Case { strip, triangle, ratio, texture, scale, beyond, surface, depth, hidden }
         },
     )
 }

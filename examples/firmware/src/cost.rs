@@ -7,7 +7,8 @@ use fixel::material::Kind;
 use fixel::num::{I12F4, I16F16};
 use fixel::{Affine, DepthFormat, Exact, Fog, Mask, Quality, QuarterPixel, Surface, prelude::*};
 
-/// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light.
+/// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light,
+/// textured (mirrored), textured (clamped) × light.
 /// Sides turned to where `cull` says are left out.
 fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'static, Rgb565, D> {
     fn of<D: DepthFormat, Q: Quality>(
@@ -22,7 +23,9 @@ fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'stat
         2 => of::<D, Q>(Material::textured(&WALL), cull),
         3 => of::<D, Q>(Material::clamped(&WALL), cull),
         4 => of::<D, Q>(Material::textured(&WALL).lit(), cull),
-        _ => of::<D, Q>(Material::gouraud().lit(), cull),
+        5 => of::<D, Q>(Material::gouraud().lit(), cull),
+        6 => of::<D, Q>(Material::mirrored(&WALL), cull),
+        _ => of::<D, Q>(Material::clamped(&WALL).lit(), cull),
     }
 }
 
@@ -204,7 +207,7 @@ mod tests {
 
     #[test]
     fn rectangles_cover_what_their_shape_says() {
-        for (surface, quality, shape) in (0..6 * 3 * 64).map(|i| (i % 6, i / 6 % 3, i / 18)) {
+        for (surface, quality, shape) in (0..8 * 3 * 64).map(|i| (i % 8, i / 8 % 3, i / 24)) {
             let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
             let mut frame = Deep::new(SIZE, &mut pixels, &mut depth).expect("the size fits");
             rectangle(surface, quality, shape, &mut frame);
