@@ -39,13 +39,7 @@ pub(crate) fn bake(
     let mut warn = |text: String| warnings.push(Place::file(path).warning(text));
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let surfaces = check::surfaces(&model.parts);
-    for found in &surfaces {
-        if let Some(text) = found.text() {
-            let object =
-                if found.object.is_empty() { String::new() } else { format!("`{}`: ", found.object) };
-            warn(format!("{object}{text}"));
-        }
-    }
+    check::texts(&surfaces).into_iter().for_each(&mut warn);
     if model.unused_vertices > 0 {
         warn(format!("{} vertices that no triangle has are left out", model.unused_vertices));
     }

@@ -27,33 +27,38 @@ pub struct Surfaces {
     pub against_normals: usize,
 }
 
-impl Surfaces {
-    /// What to say of it; nothing if all is well.
-    pub(crate) fn text(&self) -> Option<String> {
-        let Self {
-            degenerate, open_edges, wound_against, crowded_edges, inside_out, against_normals, ..
-        } = self;
-        let all = [
-            (*degenerate, "triangles without area, left out"),
-            (
-                *open_edges,
-                "open edges: backs can be seen there, and are not drawn unless the material is two-sided",
-            ),
-            (
-                *wound_against,
-                "edges between triangles that are wound against each other: one of them shows its back",
-            ),
-            (*crowded_edges, "edges of more than two triangles"),
-            (*inside_out, "closed surfaces that face inwards, so that they are not seen from outside"),
-            (*against_normals, "triangles that face away from their normals"),
-        ];
-        let found: Vec<_> = all
-            .iter()
-            .filter(|(count, _)| *count > 0)
-            .map(|(count, what)| format!("{count} {what}"))
-            .collect();
-        (!found.is_empty()).then(|| found.join("; "))
+/// What there is to say of all objects; for each kind of fault in how many places and in which objects.
+pub(crate) fn texts(surfaces: &[Surfaces]) -> Vec<String> {
+    type Count = fn(&Surfaces) -> usize;
+    let kinds: [(Count, &str); 6] = [
+        (|found| found.degenerate, "triangles without area are left out"),
+        (
+            |found| found.open_edges,
+            "edges are open: backs can be seen there, and are not drawn unless the material is two-sided",
+        ),
+        (
+            |found| found.wound_against,
+            "edges are between triangles that are wound against each other: one of them shows its back",
+        ),
+        (|found| found.crowded_edges, "edges have more than two triangles"),
+        (|found| found.inside_out, "closed surfaces face inwards: they are not seen from outside"),
+        (|found| found.against_normals, "triangles face away from their normals"),
+    ];
+    let mut texts = Vec::new();
+    for (count, what) in kinds {
+        let objects: Vec<_> = surfaces.iter().filter(|found| count(found) > 0).collect();
+        let total: usize = objects.iter().map(|found| count(found)).sum();
+        if total == 0 {
+            continue;
+        }
+        let named: Vec<_> = objects.iter().filter(|found| !found.object.is_empty()).collect();
+        let names: Vec<_> = named.iter().take(4).map(|found| format!("`{}`", found.object)).collect();
+        let more = if named.len() > 4 { format!(" and {} more", named.len() - 4) } else { String::new() };
+        let place = if names.is_empty() { String::new() } else { format!(" ({}{more})", names.join(", ")) };
+        let (count, rest) = what.split_once(' ').unwrap_or((what, ""));
+        texts.push(format!("{total} {count}{place} {rest}"));
     }
+    texts
 }
 
 /// A triangle's number, and whether it runs along the edge from the lower to the higher vertex.
@@ -172,9 +177,11 @@ mod tests {
         let good = tetrahedron(100.0);
         let well = Surfaces { object: "it".into(), ..Surfaces::default() };
         assert_eq!(found(good.clone()), well);
-        assert_eq!(well.text(), None);
+        assert_eq!(texts(std::slice::from_ref(&well)), [String::new(); 0]);
         let open = good[1..].to_vec();
         assert_eq!(found(open), Surfaces { open_edges: 3, ..well.clone() });
+        let texts = texts(&[found(good[1..].to_vec())]);
+        assert!(texts[0].starts_with("3 edges (`it`) are open"), "{texts:?}");
         let mut turned = good.clone();
         turned.iter_mut().for_each(|triangle| triangle.corners.swap(0, 1));
         assert_eq!(found(turned), Surfaces { inside_out: 1, ..well.clone() });

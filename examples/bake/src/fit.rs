@@ -59,7 +59,9 @@ mod tests {
 
     #[test]
     fn the_scale_is_the_least_power_of_two_that_holds_the_model() {
-        for (reach, scale) in [(1.0, 0.125), (7.9, 1.0), (8.0, 2.0), (0.5, 0.0625), (4095.0, 512.0)] {
+        for (reach, scale) in
+            [(1.0, 0.25), (0.99, 0.125), (7.9, 1.0), (8.0, 2.0), (0.5, 0.125), (4095.0, 512.0)]
+        {
             let fit = Fit::new([-reach, 0.0, 0.0], [reach / 2.0; 3], [0.0; 3], None);
             assert_eq!((fit.scale, fit.unit), (scale, 1.0), "{reach}");
             assert!(fit.holds([-reach, 0.0, 0.0], [reach / 2.0; 3]));

@@ -68,9 +68,9 @@ mod tests {
         let arrow = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [3.0, 1.0, 0.0]];
         let found = triangles(&arrow);
         assert_eq!(found.len(), 2);
-        assert!((area(&arrow, &found) - 3.0).abs() < 1e-9);
+        assert!((area(&arrow, &found) - 4.0).abs() < 1e-9);
         let turned: Vec<_> = arrow.iter().rev().copied().collect();
-        assert!((area(&turned, &triangles(&turned)) + 3.0).abs() < 1e-9);
+        assert!((area(&turned, &triangles(&turned)) + 4.0).abs() < 1e-9);
         assert_eq!(triangles(&[[1.0; 3]; 5]).len(), 3);
         assert_eq!(triangles(&arrow[..2]), [[0; 3]; 0]);
     }
