@@ -96,7 +96,7 @@ pub fn of_a_frame(baked: &Baked, size: u32) -> (Cycles, f64) {
     let mut sum = [0.0; 2];
     let mut covered = 0.0;
     for number in 0..VIEWS {
-        let (_, frame) = view::draw(baked, size, f64::from(number) * 360.0 / f64::from(VIEWS));
+        let (_, frame) = view::draw(baked, size, [f64::from(number) * 360.0 / f64::from(VIEWS), 20.0]);
         covered += frame.covered as f64;
         for ((baked_mesh, stats), pixels) in baked.meshes.iter().zip(&frame.stats).zip(&frame.pixels) {
             let cycles = mesh(&baked.materials[baked_mesh.material], stats, *pixels);

@@ -123,7 +123,7 @@ fn one(path: &Path, arguments: &Arguments) -> Result<(), BakeError> {
         };
         if arguments.picture {
             let path = folder.join(format!("{}.png", baked.name));
-            let (picture, _) = view::draw(&baked, 240, 30.0);
+            let (picture, _) = view::draw(&baked, 240, [30.0, 20.0]);
             let saved = picture.save(&path);
             saved.map_err(|error| BakeError::Write {
                 path: path.clone(),

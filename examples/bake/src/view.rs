@@ -23,8 +23,8 @@ pub struct Frame {
 
 type Screen<'b> = Band<'b, Rgb565, Depth16>;
 
-/// Where the camera stands: turned about the vertical axis, and looking down a little.
-fn pose(baked: &Baked, yaw: f64) -> Option<(Pose, f64)> {
+/// Where the model stands before the camera: turned about the vertical axis, then tilted.
+fn pose(baked: &Baked, yaw: f64, pitch: f64) -> Option<(Pose, f64)> {
     let bounds = baked.report.bounds;
     let fit = &baked.fit;
     let middle = [0, 1, 2].map(|i| f64::midpoint(bounds[0][i], bounds[1][i]));
@@ -40,15 +40,15 @@ fn pose(baked: &Baked, yaw: f64) -> Option<(Pose, f64)> {
     let turned = Pose::IDENTITY
         .scaled(U10F22::saturating_from_num(scale))
         .rotated_y(Turn::from_degrees(yaw.round() as i32))
-        .rotated_x(Turn::from_degrees(20));
+        .rotated_x(Turn::from_degrees(pitch.round() as i32));
     let center = [0, 1, 2].map(|i| ((middle[i] - fit.origin[i]) * fit.unit / fit.scale) as f32);
     let moved = turned.transform_point(Vec3::lit(center[0], center[1], center[2]));
     Some((turned.at(-moved), scale))
 }
 
-/// Draws the model, seen whole, turned by `yaw` degrees, into a picture, and counts what that takes.
+/// Draws the model, seen whole, turned by `yaw` degrees and from `pitch` degrees above, into a picture, and counts what that takes.
 #[must_use]
-pub fn draw(baked: &Baked, size: u32, yaw: f64) -> (RgbImage, Frame) {
+pub fn draw(baked: &Baked, size: u32, [yaw, pitch]: [f64; 2]) -> (RgbImage, Frame) {
     let size = size.clamp(1, 1023);
     let screen = Size::new(size, size);
     let mut frame = Frame::default();
@@ -63,7 +63,7 @@ pub fn draw(baked: &Baked, size: u32, yaw: f64) -> (RgbImage, Frame) {
     let camera = Camera::perspective(Turn::from_degrees(40), screen).at(Vec3::lit(0.0, 0.0, 3.25)).near(0.25);
     let suns = [Light::directional(Vec3::lit(-0.5, -0.8, -0.6), [190, 185, 175])];
     let lights = Lights::new([75, 78, 85], &suns);
-    if let Some((pose, _)) = pose(baked, yaw) {
+    if let Some((pose, _)) = pose(baked, yaw, pitch) {
         let view = camera.lit_by(&lights);
         // What can be seen through comes last.
         let mut order: Vec<_> = (0..baked.meshes.len()).collect();

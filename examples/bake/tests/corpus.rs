@@ -90,6 +90,25 @@ fn outcomes() -> &'static BTreeMap<String, Outcome> {
     })
 }
 
+/// From one side, above or below: flat models are seen from one side only.
+fn best_view(baked: &Baked) -> (RgbImage, view::Frame) {
+    let plain = view::draw(baked, SIDE, [30.0, 20.0]);
+    if plain.1.covered > 900 {
+        return plain;
+    }
+    let views = [
+        [30.0, 20.0],
+        [-30.0, 20.0],
+        [150.0, 20.0],
+        [210.0, 20.0],
+        [30.0, -35.0],
+        [210.0, -35.0],
+        [30.0, 70.0],
+    ];
+    let views = views.map(|view| view::draw(baked, SIDE, view));
+    views.into_iter().max_by_key(|(_, frame)| frame.covered).expect("some views")
+}
+
 #[test]
 fn each_model_is_baked_and_drawn_or_refused_by_name() {
     let outcomes = outcomes();
@@ -102,9 +121,8 @@ fn each_model_is_baked_and_drawn_or_refused_by_name() {
             Ok(baked) => {
                 baked_count += 1;
                 assert!(baked.report.triangles > 0, "{name}");
-                let (_, frame) = view::draw(baked, SIDE, 30.0);
-                let (_, behind) = view::draw(baked, SIDE, 210.0);
-                assert!(frame.covered + behind.covered > 100, "{name} covers {} pixels", frame.covered);
+                let (_, frame) = best_view(baked);
+                assert!(frame.covered > 100, "{name} covers {} pixels", frame.covered);
                 // The order is never worse than the file's, and no frame transforms more: culling comes after.
                 assert!(baked.report.transforms <= baked.report.transforms_before, "{name}");
                 let drawn: u32 = frame.stats.iter().map(|stats| stats.transformed).sum();
@@ -336,7 +354,7 @@ fn the_table_and_the_contact_sheet_are_what_comes_out() {
     let rows = (baked.len() as u32).div_ceil(COLUMNS);
     let mut sheet = RgbImage::from_pixel(COLUMNS * SIDE, rows * SIDE, Rgb([40, 44, 56]));
     for (number, (_, baked)) in baked.iter().enumerate() {
-        let (picture, _) = view::draw(baked, SIDE, 30.0);
+        let (picture, _) = best_view(baked);
         let (x, y) = (number as u32 % COLUMNS * SIDE, number as u32 / COLUMNS * SIDE);
         imageops::replace(&mut sheet, &picture, x.into(), y.into());
     }
