@@ -52,29 +52,26 @@ struct Reader<'p> {
 pub(crate) fn read(path: &Path) -> Result<Model, BakeError> {
     let bytes = read_file(path)?;
     let error = |problem: String| Place::file(path).error(problem);
-    if !bytes.starts_with(b"glTF") {
-        let version = |value: &json::Value| value.get("asset")?.get("version")?.as_str().map(str::to_owned);
-        let value: json::Value =
-            deserialize::from_slice(&bytes).map_err(|problem| json_error(path, &problem))?;
-        match version(&value) {
-            Some(version) if version.starts_with("2.") => {}
-            Some(version) => return Err(error(format!("is glTF {version}; 2.0 can be read"))),
-            // Files of version 1.0 need not say so.
-            None if value.get("techniques").is_some()
-                || value.get("meshes").is_some_and(json::Value::is_object) =>
-            {
-                return Err(error("is glTF 1.0; 2.0 can be read".into()));
-            }
-            None => return Err(error("says no `asset.version`, so it is no glTF".into())),
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        chunks(&bytes).map_err(|problem| Place::file(path).error(problem))?
+    } else {
+        (bytes.as_slice(), None)
+    };
+    let version = |value: &json::Value| value.get("asset")?.get("version")?.as_str().map(str::to_owned);
+    let value: json::Value = deserialize::from_slice(text).map_err(|problem| json_error(path, &problem))?;
+    match version(&value) {
+        Some(version) if version.starts_with("2.") => {}
+        Some(version) => return Err(error(format!("is glTF {version}; 2.0 can be read"))),
+        // Files of version 1.0 need not say so.
+        None if value.get("techniques").is_some()
+            || value.get("meshes").is_some_and(json::Value::is_object) =>
+        {
+            return Err(error("is glTF 1.0; 2.0 can be read".into()));
         }
+        None => return Err(error("says no `asset.version`, so it is no glTF".into())),
     }
-    let glb_version =
-        bytes.get(4..8).and_then(|version| version.first_chunk().copied()).map(u32::from_le_bytes);
-    if let Some(version) = glb_version.filter(|version| bytes.starts_with(b"glTF") && *version != 2) {
-        return Err(error(format!("is GLB {version}; version 2 can be read")));
-    }
-    let Gltf { document, blob } =
-        Gltf::from_slice_without_validation(&bytes).map_err(|problem| match problem {
+    let Gltf { document, .. } =
+        Gltf::from_slice_without_validation(text).map_err(|problem| match problem {
             gltf::Error::Deserialize(problem) => json_error(path, &problem),
             problem => error(problem.to_string()),
         })?;
@@ -110,6 +107,15 @@ pub(crate) fn read(path: &Path) -> Result<Model, BakeError> {
 /// Whether all indices are in range, and all that there has to be is there: the crate `gltf` counts on it. That positions say between
 /// which numbers they lie is left to the file: nothing here needs it.
 fn validate(path: &Path, root: &json::Root) -> Result<(), BakeError> {
+    // It does not look at these before it takes what they name.
+    for (number, mesh) in root.meshes.iter().enumerate() {
+        let named = mesh.primitives.iter().flat_map(|primitive| primitive.attributes.values());
+        if let Some(bad) = named.map(|index| index.value()).find(|index| *index >= root.accessors.len()) {
+            return Err(
+                Place::file(path).error(format!("mesh {number} names accessor {bad}, which is not there"))
+            );
+        }
+    }
     let mut problems = Vec::new();
     root.validate(root, json::Path::new, &mut |at, problem| {
         let at = at().to_string();
@@ -131,6 +137,29 @@ fn validate(path: &Path, root: &json::Root) -> Result<(), BakeError> {
     let more = problems.len().saturating_sub(texts.len());
     let more = if more > 0 { format!(", and {more} more") } else { String::new() };
     Err(Place::file(path).error(format!("{}{more}", texts.join(", "))))
+}
+
+/// The text and the data of a binary file. Its lengths may be anything, which the crate `gltf` does not expect.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+    let word = |at: usize| bytes.get(at..)?.first_chunk().copied().map(u32::from_le_bytes);
+    let chunk = |at: usize, kind: &[u8; 4]| {
+        let length = word(at)? as usize;
+        let data = bytes.get(at + 8..)?;
+        (bytes.get(at + 4..at + 8)? == kind).then(|| data.get(..length))
+    };
+    match word(4) {
+        Some(2) => {}
+        Some(version) => return Err(format!("is GLB {version}; version 2 can be read")),
+        None => return Err("ends within its header".into()),
+    }
+    let text =
+        chunk(12, b"JSON").ok_or("does not begin with its text, `JSON`")?.ok_or("ends within its text")?;
+    let data = match chunk(20 + text.len().next_multiple_of(4), b"BIN\0") {
+        Some(Some(data)) => Some(data),
+        Some(None) => return Err("ends within its binary part".into()),
+        None => None,
+    };
+    Ok((text, data))
 }
 
 fn json_error(path: &Path, problem: &json::Error) -> BakeError {
@@ -171,15 +200,11 @@ impl Reader<'_> {
         Ok(bytes)
     }
 
-    fn read_buffers(
-        &mut self,
-        document: &gltf::Document,
-        mut blob: Option<Vec<u8>>,
-    ) -> Result<(), BakeError> {
+    fn read_buffers(&mut self, document: &gltf::Document, blob: Option<&[u8]>) -> Result<(), BakeError> {
         for buffer in document.buffers() {
             let bytes = match buffer.source() {
                 buffer::Source::Bin => {
-                    blob.take().ok_or_else(|| self.error("has no binary part, and names it"))?
+                    blob.ok_or_else(|| self.error("has no binary part, and names it"))?.to_vec()
                 }
                 buffer::Source::Uri(uri) => self.fetch(uri)?,
             };

@@ -52,7 +52,11 @@ pub(crate) fn read(path: &Path, model: &mut Model) -> Result<Vec<RawMaterial>, B
             "map_Kd" | "map_kd" => {
                 let (file, is_clamped) = map(rest);
                 match find(path, file) {
-                    Some(found) => material.picture = Some(picture::add(&found, model)?),
+                    Some(found) => {
+                        material.picture = Some(picture::add(&found, model)?);
+                        // Where the picture has holes.
+                        material.blends = true;
+                    }
                     None => {
                         let text = format!(
                             "there is no picture `{file}`: material `{}` has its colour",

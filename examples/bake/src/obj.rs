@@ -81,7 +81,7 @@ pub(crate) fn read(path: &Path) -> Result<Model, BakeError> {
                     2 => points_and_lines.1 += 1,
                     _ => {
                         let material = *material.get_or_insert_with(|| reader.material(""));
-                        reader.face(&corners, &name, material, smoothing, place)?;
+                        reader.face(&corners, &name, material, smoothing);
                     }
                 }
             }
@@ -183,23 +183,11 @@ impl Reader {
         Ok(Named { position, uv, normal })
     }
 
-    fn face(
-        &mut self,
-        corners: &[Named],
-        name: &str,
-        material: usize,
-        smoothing: Smoothing,
-        place: impl Fn() -> Place,
-    ) -> Result<(), BakeError> {
+    fn face(&mut self, corners: &[Named], name: &str, material: usize, smoothing: Smoothing) {
         self.is_used.resize(self.positions.len(), false);
         corners.iter().for_each(|corner| self.is_used[corner.position] = true);
         let points: Vec<_> = corners.iter().map(|corner| self.positions[corner.position]).collect();
         let triangles = polygon::triangles(&points);
-        if triangles.is_empty() {
-            self.model
-                .warnings
-                .push(place().warning("a face that crosses itself, or has no area, is left out"));
-        }
         let next = self.model.parts.len();
         let part = *self.parts.entry((name.to_owned(), material)).or_insert(next);
         if part == next {
@@ -217,7 +205,6 @@ impl Reader {
         let triangles =
             triangles.into_iter().map(|triangle| Triangle { corners: triangle.map(corner), smoothing });
         self.model.parts[part].triangles.extend(triangles);
-        Ok(())
     }
 }
 

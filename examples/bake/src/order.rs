@@ -95,8 +95,8 @@ const MISS: i32 = 16;
 /// The searches, with how many beginnings each follows at a time. Found by trying on models of many kinds; no single one is the best for
 /// most of them.
 const QUICK: [(usize, Weights); 6] = [
-    (8, Weights { there: -8, age: 4, left: 1 }),
     (8, Weights { there: 4, age: 1, left: 0 }),
+    (8, Weights { there: -8, age: 4, left: 1 }),
     (8, Weights { there: 0, age: 2, left: 1 }),
     (8, Weights { there: -8, age: 2, left: 1 }),
     (32, Weights { there: -8, age: 2, left: 1 }),

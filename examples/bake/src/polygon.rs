@@ -2,8 +2,8 @@
 
 use earcut::Earcut;
 
-/// The triangles of a polygon, as numbers of its corners, in its own winding. There may be fewer than corners − 2 if the polygon
-/// crosses itself.
+/// The triangles of a polygon, as numbers of its corners, in its own winding: two fewer than it has corners. One that crosses itself is
+/// a fan.
 pub(crate) fn triangles(corners: &[[f32; 3]]) -> Vec<[usize; 3]> {
     let count = corners.len();
     if count < 3 {
@@ -35,11 +35,15 @@ pub(crate) fn triangles(corners: &[[f32; 3]]) -> Vec<[usize; 3]> {
     }
     let mut ears: Vec<usize> = Vec::new();
     Earcut::new().earcut(flat.iter().copied(), &[], &mut ears);
-    let found = ears.as_chunks::<3>().0.iter().map(|&[a, b, c]| {
-        // Ears come in either winding.
-        if turn(flat[a], flat[b], flat[c]) < 0.0 { [a, c, b] } else { [a, b, c] }
-    });
-    found.collect()
+    let ears = ears.as_chunks::<3>().0;
+    if ears.len() != count - 2 {
+        // It crosses itself, as seen from there.
+        return fan();
+    }
+    // Ears come in either winding.
+    ears.iter()
+        .map(|&[a, b, c]| if turn(flat[a], flat[b], flat[c]) < 0.0 { [a, c, b] } else { [a, b, c] })
+        .collect()
 }
 
 /// Across a polygon, as long as twice its area.
