@@ -2,9 +2,8 @@
 
 use crate::error::{BakeError, Place, read};
 use crate::model::{Model, RawPicture};
-use fast_image_resize as resize;
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Rgba, RgbaImage, imageops};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Rgba, Rgba32FImage, RgbaImage, imageops};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -178,28 +177,22 @@ pub(crate) fn shown(linear: f32) -> u8 {
 
 /// The same picture in another size: light is averaged, not its code, and what is transparent counts for nothing.
 fn resized(image: &RgbaImage, [width, height]: [u32; 2]) -> RgbaImage {
-    let by_hand = || imageops::resize(image, width, height, imageops::FilterType::CatmullRom);
-    let (old_width, old_height) = image.dimensions();
-    let mut bytes = image.as_raw().clone();
-    let Ok(source) =
-        resize::images::Image::from_slice_u8(old_width, old_height, &mut bytes, resize::PixelType::U8x4)
-    else {
-        return by_hand();
-    };
-    let mut light = resize::images::Image::new(old_width, old_height, resize::PixelType::U16x4);
-    let mut new_light = resize::images::Image::new(width, height, resize::PixelType::U16x4);
-    let mut new = resize::images::Image::new(width, height, resize::PixelType::U8x4);
-    let mapper = resize::create_srgb_mapper();
-    let filter = resize::ResizeAlg::Convolution(resize::FilterType::CatmullRom);
-    let done = mapper.forward_map(&source, &mut light).is_ok()
-        && resize::Resizer::new()
-            .resize(&light, &mut new_light, &resize::ResizeOptions::new().resize_alg(filter))
-            .is_ok()
-        && mapper.backward_map(&new_light, &mut new).is_ok();
-    if !done {
-        return by_hand();
-    }
-    RgbaImage::from_raw(width, height, new.into_vec()).unwrap_or_else(by_hand)
+    let table: Vec<f32> = (0..=255).map(linear).collect();
+    let light = Rgba32FImage::from_fn(image.width(), image.height(), |x, y| {
+        let Rgba([red, green, blue, alpha]) = *image.get_pixel(x, y);
+        let alpha = f32::from(alpha) / 255.0;
+        let [red, green, blue] = [red, green, blue].map(|channel| table[usize::from(channel)] * alpha);
+        Rgba([red, green, blue, alpha])
+    });
+    let new = imageops::resize(&light, width, height, imageops::FilterType::CatmullRom);
+    RgbaImage::from_fn(width, height, |x, y| {
+        let Rgba([red, green, blue, alpha]) = *new.get_pixel(x, y);
+        if alpha <= 0.0 {
+            return Rgba([0; 4]);
+        }
+        let [red, green, blue] = [red, green, blue].map(|channel| shown(channel / alpha));
+        Rgba([red, green, blue, (alpha.min(1.0) * 255.0).round() as u8])
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use fixel::embedded_graphics::prelude::*;
 use fixel::num::U10F22;
 use fixel::{
     Band, Camera, Depth16, Gradient, Light, Lights, Mask, Material, Mesh, Pose, Stats, Surface, Texture,
-    Turn, Vec3,
+    Turn, Vec3, View,
 };
 use image::RgbImage;
 
@@ -64,7 +64,6 @@ pub fn draw(baked: &Baked, size: u32, [yaw, pitch]: [f64; 2]) -> (RgbImage, Fram
     let suns = [Light::directional(Vec3::lit(-0.5, -0.8, -0.6), [190, 185, 175])];
     let lights = Lights::new([75, 78, 85], &suns);
     if let Some((pose, _)) = pose(baked, yaw, pitch) {
-        let view = camera.lit_by(&lights);
         // What can be seen through comes last.
         let mut order: Vec<_> = (0..baked.meshes.len()).collect();
         order.sort_by_key(|number| baked.materials[baked.meshes[*number].material].alpha.is_some());
@@ -75,6 +74,7 @@ pub fn draw(baked: &Baked, size: u32, [yaw, pitch]: [f64; 2]) -> (RgbImage, Fram
             let material = &baked.materials[baked_mesh.material];
             let Ok(mesh) = baked_mesh.mesh() else { continue };
             let Some(surface) = surface(baked, material) else { continue };
+            let view = if material.is_lit { camera.lit_by(&lights) } else { View::of(&camera) };
             view.draw_counted(&mesh, &pose, &surface, &mut band, &mut frame.stats[number]);
             frame.pixels[number] = covered_alone(&mesh, &pose, &camera, size);
         }
@@ -97,7 +97,9 @@ fn covered_alone(mesh: &Mesh<'_>, pose: &Pose, camera: &Camera, size: u32) -> us
     band.depth().iter().filter(|depth| **depth != 0).count()
 }
 
-/// The surface of a baked material.
+/// The surface of a baked material; one on which no light falls is to be drawn in a view without lights, as [`draw`] does.
+///
+/// Each kind of material and layer is a loop of its own, which takes the compiler seconds: so there are no more here than these.
 #[must_use]
 pub fn surface<'a>(baked: &'a Baked, material: &BakedMaterial) -> Option<Surface<'a, Rgb565, Depth16>> {
     macro_rules! finished {
@@ -109,29 +111,18 @@ pub fn surface<'a>(baked: &'a Baked, material: &BakedMaterial) -> Option<Surface
             }
         }};
     }
-    macro_rules! textured {
-        ($made:expr, $mask:expr) => {
-            match ($mask, material.is_lit) {
-                (Some(mask), true) => finished!($made.lit().masked(&mask)),
-                (Some(mask), false) => finished!($made.masked(&mask)),
-                (None, true) => finished!($made.lit()),
-                (None, false) => finished!($made),
-            }
-        };
-    }
     Some(match material.paint {
-        Paint::Flat(color) if material.is_lit => finished!(Material::flat_bits(color).lit()),
-        Paint::Flat(color) => finished!(Material::flat_bits(color)),
-        Paint::Gouraud if material.is_lit => finished!(Material::gouraud().lit()),
-        Paint::Gouraud => finished!(Material::gouraud()),
+        Paint::Flat(color) => finished!(Material::flat_bits(color).lit()),
+        Paint::Gouraud => finished!(Material::gouraud().lit()),
         Paint::Texture { texture, is_clamped, is_masked } => {
             let baked = baked.textures.get(texture)?;
             let texture: Texture<'a> = baked.texture().ok()?;
             let mask: Option<Mask<'a>> = baked.mask().ok()?.filter(|_| is_masked);
-            if is_clamped {
-                textured!(Material::clamped(&texture), mask)
-            } else {
-                textured!(Material::textured(&texture), mask)
+            match (mask, is_clamped) {
+                (Some(mask), true) => finished!(Material::clamped(&texture).lit().masked(&mask)),
+                (Some(mask), false) => finished!(Material::textured(&texture).lit().masked(&mask)),
+                (None, true) => finished!(Material::clamped(&texture).lit()),
+                (None, false) => finished!(Material::textured(&texture).lit()),
             }
         }
     })
