@@ -118,13 +118,13 @@ fn cut_one(triangle: &TexelTriangle, is_cut: [bool; 3], pieces: &mut Vec<TexelTr
 /// Moves coordinates by whole repeats of a texture of `period` texels, so that all are within ±2047 texels: all together if they span no
 /// more than that, else triangle by triangle.
 pub(crate) fn shift(triangles: &mut [TexelTriangle], period: [f64; 2]) {
-    for axis in 0..2 {
+    for (axis, period) in period.into_iter().enumerate() {
         let all = || triangles.iter().flatten().map(|corner| corner.texels[axis]);
         let (low, high) = all().fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
         if low >= -MOST && high <= MOST {
             continue;
         }
-        let by = (f64::midpoint(low, high) / period[axis]).round() * period[axis];
+        let by = (f64::midpoint(low, high) / period).round() * period;
         if low - by >= -MOST && high - by <= MOST {
             triangles.iter_mut().flatten().for_each(|corner| corner.texels[axis] -= by);
             continue;
@@ -173,7 +173,7 @@ mod tests {
         assert!(cut(&mut parts, &[MOST; 2]).expect("not too many") > 4);
         for part in &parts {
             assert!((area(part) - 1.0).abs() < 1e-6);
-            assert!(part.iter().all(|t| across_is_up(t)));
+            assert!(part.iter().all(across_is_up));
         }
         // Each edge inside has a triangle on either side: neighbours were cut alike.
         let mut edges = std::collections::HashMap::new();

@@ -377,7 +377,7 @@ impl Reader<'_> {
             Mode::TriangleFan => (1..indices.len().saturating_sub(1)).map(|i| [0, i, i + 1]).collect(),
             _ => (0..indices.len() / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         };
-        if primitive.mode() == Mode::Triangles && indices.len() % 3 != 0 {
+        if primitive.mode() == Mode::Triangles && !indices.len().is_multiple_of(3) {
             self.warn(format!(
                 "{at} has {} corners, which make no whole triangles: the last are left out",
                 indices.len()

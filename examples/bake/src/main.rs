@@ -86,7 +86,8 @@ fn one(path: &Path, arguments: &Arguments) -> Result<(), BakeError> {
         return Ok(());
     }
     let mut bake = Bake::new(path).crease(arguments.crease).longest_side(arguments.longest_side);
-    let switches: [(bool, fn(Bake) -> Bake); 5] = [
+    type Switch = fn(Bake) -> Bake;
+    let switches: [(bool, Switch); 5] = [
         (arguments.center, Bake::center),
         (arguments.unlit, Bake::unlit),
         (arguments.by_object, Bake::by_object),

@@ -3,7 +3,7 @@
 //! - In: triangles as indices into vertices.
 //! - Out: the same triangles, each with the same winding, in an order in which fixel transforms few vertices twice; and a new
 //!   number for each vertex, in the order in which they are needed first.
-//! - Assumes: indices that are in range.
+//! - Assumes: indices that are in range, three different ones a triangle.
 //!
 //! fixel keeps the nine vertices that it transformed last (`src/geometry/assembly.rs`), first in, first out, and finds one through a table
 //! of 64 hints. [`transforms`] does as it does, so what is counted here is what `Camera::draw_counted` counts of a mesh that
@@ -108,8 +108,8 @@ const THOROUGH: [(usize, Weights); 4] = [
     (128, Weights { there: -8, age: 2, left: 0 }),
     (128, Weights { there: 0, age: 2, left: 1 }),
 ];
-/// Meshes of more triangles are searched once, with few beginnings.
-const LARGE: usize = 20_000;
+/// Meshes of more triangles are searched twice, with few beginnings.
+const LARGE: usize = 5000;
 
 /// One way to have begun: which triangles were drawn, and what the cache holds then.
 struct Begun {
@@ -117,6 +117,8 @@ struct Begun {
     done: Vec<u64>,
     /// The newest last.
     cache: [u32; CACHED],
+    /// For each of these how many triangles still need it.
+    left: [u32; CACHED],
     /// For transformed vertices.
     cost: i32,
     /// Tells apart what drew other triangles.
@@ -146,6 +148,7 @@ struct Step {
     from: u32,
     triangle: u32,
     cache: [u32; CACHED],
+    left: [u32; CACHED],
     hash: u64,
 }
 
@@ -158,9 +161,10 @@ struct Search<'a> {
 impl Search<'_> {
     fn step(&self, begun: &Begun, from: u32, number: u32, weights: Weights) -> Step {
         let triangle = self.triangles[number as usize];
-        let (mut cache, mut cost) = (begun.cache, begun.cost);
+        let (mut cache, mut left, mut cost) = (begun.cache, begun.left, begun.cost);
         for vertex in triangle {
-            if cache.contains(&vertex) {
+            if let Some(place) = cache.iter().position(|cached| *cached == vertex) {
+                left[place] -= 1;
                 continue;
             }
             cost += MISS;
@@ -170,20 +174,17 @@ impl Search<'_> {
                 place += 1;
             }
             cache[place..].rotate_left(1);
-            cache[CACHED - 1] = vertex;
+            left[place..].rotate_left(1);
+            let others = self.adjacency.of(vertex).iter().filter(|other| !is_done(&begun.done, **other));
+            (cache[CACHED - 1], left[CACHED - 1]) = (vertex, others.count() as u32 - 1);
         }
         let mut score = cost;
-        for (place, vertex) in cache.iter().enumerate().filter(|(_, vertex)| **vertex != NONE) {
-            let others = self.adjacency.of(*vertex).iter();
-            let left =
-                others.filter(|other| **other != number && !is_done(&begun.done, **other)).take(4).count();
-            if left > 0 {
-                let age = (CACHED - place) as i32;
-                score += weights.there + (weights.age + weights.left * (left as i32 - 1)) * age;
-            }
+        for (place, left) in left.iter().enumerate().filter(|(_, left)| **left > 0) {
+            let age = (CACHED - place) as i32;
+            score += weights.there + (weights.age + weights.left * ((*left).min(4) as i32 - 1)) * age;
         }
         let hash = begun.hash ^ scrambled(u64::from(number) + 1);
-        Step { cost, score, from, triangle: number, cache, hash }
+        Step { cost, score, from, triangle: number, cache, left, hash }
     }
 
     /// The triangles that share a vertex with the cache, or else any.
@@ -205,7 +206,8 @@ impl Search<'_> {
     /// The best order that is found with so many beginnings at a time.
     fn run(&self, width: usize, weights: Weights, mut progress: impl FnMut(f64)) -> Vec<u32> {
         let done = vec![0; self.triangles.len().div_ceil(64)];
-        let mut beginnings = vec![Begun { done, cache: [NONE; CACHED], cost: 0, hash: 0, history: NONE }];
+        let mut beginnings =
+            vec![Begun { done, cache: [NONE; CACHED], left: [0; CACHED], cost: 0, hash: 0, history: NONE }];
         let mut history: Vec<(u32, u32)> = Vec::new();
         let (mut steps, mut seen) = (Vec::new(), HashSet::new());
         for count in 0..self.triangles.len() {
@@ -232,8 +234,8 @@ impl Search<'_> {
                 let mut done = begun.done.clone();
                 done[step.triangle as usize / 64] |= 1 << (step.triangle % 64);
                 history.push((begun.history, step.triangle));
-                let Step { cache, cost, hash, .. } = *step;
-                next.push(Begun { done, cache, cost, hash, history: history.len() as u32 - 1 });
+                let Step { cache, left, cost, hash, .. } = *step;
+                next.push(Begun { done, cache, left, cost, hash, history: history.len() as u32 - 1 });
             }
             beginnings = next;
         }
@@ -295,7 +297,7 @@ pub(crate) fn order(
     let search = Search { triangles, adjacency: Adjacency::new(triangles, vertices) };
     let mut searches = QUICK.to_vec();
     if triangles.len() > LARGE {
-        searches.truncate(1);
+        searches.truncate(2);
     }
     if thorough {
         searches.extend(THOROUGH);

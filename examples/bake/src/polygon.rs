@@ -51,9 +51,9 @@ fn newell(corners: &[[f32; 3]]) -> [f64; 3] {
     let mut normal = [0.0; 3];
     for (k, a) in corners.iter().enumerate() {
         let b = &corners[(k + 1) % corners.len()];
-        for axis in 0..3 {
+        for (axis, sum) in normal.iter_mut().enumerate() {
             let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-            normal[axis] += (f64::from(a[i]) - f64::from(b[i])) * (f64::from(a[j]) + f64::from(b[j]));
+            *sum += (f64::from(a[i]) - f64::from(b[i])) * (f64::from(a[j]) + f64::from(b[j]));
         }
     }
     normal

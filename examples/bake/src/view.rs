@@ -75,7 +75,7 @@ pub fn draw(baked: &Baked, size: u32, [yaw, pitch]: [f64; 2]) -> (RgbImage, Fram
             let Ok(mesh) = baked_mesh.mesh() else { continue };
             let Some(surface) = surface(baked, material) else { continue };
             let view = if material.is_lit { camera.lit_by(&lights) } else { View::of(&camera) };
-            view.draw_counted(&mesh, &pose, &surface, &mut band, &mut frame.stats[number]);
+            view.draw_counted(&mesh, &pose, surface, &mut band, &mut frame.stats[number]);
             frame.pixels[number] = covered_alone(&mesh, &pose, &camera, size);
         }
         frame.covered = band.depth().iter().filter(|depth| **depth != 0).count();

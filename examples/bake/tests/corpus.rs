@@ -429,7 +429,7 @@ fn modules_compile_and_draw_what_is_in_memory() {
         order.sort_by_key(|mesh| baked.materials[mesh.material].alpha.is_some());
         for mesh in order {
             let surface = view::surface(baked, &baked.materials[mesh.material]).expect("a surface");
-            camera.lit_by(&lights).draw(&mesh.mesh().expect("a mesh"), &pose, &surface, &mut band);
+            camera.lit_by(&lights).draw(&mesh.mesh().expect("a mesh"), &pose, surface, &mut band);
         }
         expected.insert(format!("m{count}"), (name, sum(band.pixels())));
     }

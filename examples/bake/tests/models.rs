@@ -48,7 +48,7 @@ fn straight(baked: &Baked, size: u32) -> Vec<u16> {
     let pose = Pose::IDENTITY.scaled_lit(baked.fit.scale as f32);
     for mesh in &baked.meshes {
         let surface = view::surface(baked, &baked.materials[mesh.material]).expect("a surface");
-        camera.draw(&mesh.mesh().expect("a mesh"), &pose, &surface, &mut band);
+        camera.draw(&mesh.mesh().expect("a mesh"), &pose, surface, &mut band);
     }
     pixels
 }
