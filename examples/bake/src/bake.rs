@@ -254,11 +254,13 @@ fn fit(
         }
     }
     let middle = [0, 1, 2].map(|i| f64::midpoint(low[i], high[i]));
-    let centered = Fit::new(low, high, middle, options.unit);
+    let longest = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    let unit = options.size.filter(|_| longest > 0.0).map(|size| size / longest).or(options.unit);
+    let centered = Fit::new(low, high, middle, unit);
     if options.center {
         return check_fit(centered, low, high, path, warn, options);
     }
-    let fit = Fit::new(low, high, [0.0; 3], options.unit);
+    let fit = Fit::new(low, high, [0.0; 3], unit);
     if fit.scale / fit.unit > 4.0 * centered.scale / centered.unit {
         warn(format!(
             "the model stands so far from its origin that it has {:.0} times as coarse steps as it could: centre it",
@@ -285,7 +287,7 @@ fn check_fit(
         );
         return Err(Place::file(path).error(problem));
     }
-    if options.unit.is_none() && fit.unit != 1.0 {
+    if options.unit.is_none() && options.size.is_none() && fit.unit != 1.0 {
         warn(format!(
             "the model is larger than a pose can make it: a unit of the model is 1/{} unit of the world",
             1.0 / fit.unit

@@ -75,6 +75,12 @@ impl Bake {
         self
     }
 
+    /// How long the model's longest side is in the world, whatever its unit. In place of [`Bake::unit`].
+    pub fn size(mut self, size: f64) -> Self {
+        self.options.size = Some(size);
+        self
+    }
+
     /// Where normals are computed: triangles that meet at more than this many degrees have an edge between them. 40 without this.
     pub fn crease(mut self, degrees: f64) -> Self {
         self.options.crease = degrees;
@@ -130,8 +136,9 @@ impl Bake {
         if !self.options.crease.is_finite() {
             return wrong("the crease angle is no number");
         }
-        if self.options.unit.is_some_and(|unit| !(unit.is_finite() && unit > 0.0)) {
-            return wrong("the unit is no number above 0");
+        let lengths = [self.options.unit, self.options.size];
+        if lengths.into_iter().flatten().any(|length| !(length.is_finite() && length > 0.0)) {
+            return wrong("the unit or the size is no number above 0");
         }
         progress("read", 0, 1);
         let model = model::Model::open(&self.path)?;

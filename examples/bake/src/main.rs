@@ -32,6 +32,9 @@ struct Arguments {
     /// World units a model unit.
     #[arg(long, value_name = "LENGTH")]
     unit: Option<f64>,
+    /// World units that the longest side of the model is long.
+    #[arg(long, value_name = "LENGTH", conflicts_with = "unit")]
+    size: Option<f64>,
     /// Triangles that meet at more degrees have an edge between them, where normals are computed.
     #[arg(long, value_name = "DEGREES", default_value_t = 40.0)]
     crease: f64,
@@ -99,6 +102,9 @@ fn one(path: &Path, arguments: &Arguments) -> Result<(), BakeError> {
     }
     if let Some(unit) = arguments.unit {
         bake = bake.unit(unit);
+    }
+    if let Some(size) = arguments.size {
+        bake = bake.size(size);
     }
     // It hides itself where nobody looks, and where the work is done at once.
     let bar = ProgressBar::new(1);

@@ -5,6 +5,8 @@
 pub(crate) struct Options {
     pub(crate) center: bool,
     pub(crate) unit: Option<f64>,
+    /// The longest side in world units.
+    pub(crate) size: Option<f64>,
     pub(crate) crease: f64,
     pub(crate) longest: u32,
     pub(crate) unlit: bool,
@@ -18,6 +20,7 @@ impl Default for Options {
         Self {
             center: false,
             unit: None,
+            size: None,
             crease: 40.0,
             longest: 128,
             unlit: false,

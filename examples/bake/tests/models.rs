@@ -166,6 +166,10 @@ fn the_largest_error_is_half_a_step_and_centring_makes_steps_finer() {
     assert!(centered.report.largest_error < 0.125 / 4096.0);
     let small = Bake::new(&path).unit(0.001).bake().expect("it can be baked");
     assert_eq!((small.fit.scale, small.fit.unit), (0.25, 0.001));
+    let sized = Bake::new(&path).center().size(3.0).bake().expect("it can be baked");
+    let bounds = sized.report.bounds;
+    let longest = (0..3).map(|i| bounds[1][i] - bounds[0][i]).fold(0.0, f64::max) * sized.fit.unit;
+    assert!((longest - 3.0).abs() < 0.001, "{longest}");
     let message = Bake::new(&path).unit(100.0).bake().expect_err("it does not fit").to_string();
     assert!(message.contains("far.obj: reaches 1001.7"), "{message}");
 }

@@ -51,7 +51,7 @@ fn readmes_build_script_and_program_show_a_globe() {
         .collect();
     let pixels: Vec<_> = numbers.as_chunks::<3>().0.iter().collect();
     assert_eq!(pixels.len(), 120 * 120);
-    // The globe is as large as its file says, 1 across the middle: the Earth is mostly blue, and there is land.
+    // The globe is 2 across the middle: the Earth is mostly blue, and there is land.
     let globe: Vec<_> =
         pixels.iter().filter(|pixel| ***pixel != [24, 24, 112] && ***pixel != [24, 24, 104]).collect();
     assert!(globe.len() > 1500, "{} pixels", globe.len());
