@@ -204,8 +204,8 @@ pub use frame::{
 pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
 pub use scene::{
-    Camera, LensError, Light, Lighting, Lights, LightsError, Mask, MaskError, Mesh, MeshError, Normal,
-    PlaneError, Texture, TextureError, Vertex, VertexError, shapes, texels,
+    Aligned, AssetError, AssetKind, Camera, LensError, Light, Lighting, Lights, LightsError, Mask, MaskError,
+    Mesh, MeshError, Normal, PlaneError, Texture, TextureError, Vertex, VertexError, shapes, texels,
 };
 pub use shade::{
     Affine, Exact, Fog, Fragment, Material, Pixels, Quality, QuarterPixel, Reach, Shader, Surface, Varying,

@@ -5,6 +5,7 @@
 mod common;
 mod reference;
 
+mod assets;
 mod attributes;
 mod band;
 mod bands;

@@ -1,5 +1,6 @@
 //! What a user describes: meshes, textures, lights, a camera. Nothing here knows a pixel in memory.
 
+mod asset;
 mod camera;
 mod lens_error;
 mod light;
@@ -12,6 +13,7 @@ mod texture;
 mod vertex;
 mod vertex_error;
 
+pub use asset::{Aligned, AssetError, AssetKind};
 pub use camera::Camera;
 pub use lens_error::LensError;
 pub use light::{Light, Lighting, Lights, LightsError, Normal};

@@ -4,7 +4,10 @@ use super::vertex_error::{VertexError, is_coordinate, is_texels};
 use crate::num::{I4F12, I12F4, bits_or_max};
 
 /// A vertex of a mesh, 16 bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+///
+/// Any bytes are one, and it is [`Pod`](bytemuck::Pod): `bytemuck` casts bytes to vertices, and back.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct Vertex {
     /// Position in mesh units; the pose places and scales it.
     pub position: [I4F12; 3],

@@ -86,7 +86,13 @@ impl Material<'static, Flat> {
     /// One colour.
     #[must_use]
     pub fn flat(color: Rgb565) -> Self {
-        Self::new(Recipe::plain(RawU16::from(color).into_inner()))
+        Self::flat_bits(RawU16::from(color).into_inner())
+    }
+
+    /// One colour, in a `const`: red in bits 11 … 15, green in 5 … 10, blue in 0 … 4.
+    #[must_use]
+    pub const fn flat_bits(rgb565: u16) -> Self {
+        Self::new(Recipe::plain(rgb565))
     }
 }
 
