@@ -14,7 +14,7 @@ use std::fmt;
 use common::generate::GUARD_BAND;
 use common::perspective::{Case, FAMILIES, RATIOS, any_case, case, mesh_case};
 use common::{Canvas, Drawn, Record, Recorder, Recording, Strip, cases, for_all};
-use fixel::{Affine, Cull, Depth16, Exact, Inputs, Quality, QuarterPixel, Surface};
+use fixel::{Affine, Cull, Depth16, Exact, Inputs, PixelFormat, Quality, QuarterPixel, Surface};
 use proptest::prelude::*;
 use reference::{ATTRIBUTES, Corner, Triangle, UNIT};
 
@@ -25,6 +25,8 @@ struct Worst {
     texels: f64,
     /// Of the colours, by the contract's measure.
     color: f64,
+    /// Of the colours that are off by less than a step of the format, in levels of 1/255.
+    levels: f64,
     /// Of either, measured by the derivative at the pixel's centre instead of the step to its neighbours.
     by_derivative: f64,
     /// Of 1/w, in depth steps.
@@ -63,8 +65,14 @@ fn reads(inputs: Inputs) -> [bool; ATTRIBUTES] {
 /// The exact value that a quality stands for, where it promises one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Promise {
-    Within(f64),
+    /// Of a pixel; a colour may be off by so many levels of 1/255 instead.
+    Within(f64, f64),
     Nothing,
+}
+
+/// Within so much of a pixel. The contract's quarter of one allows a colour a step of the format's finest channel, too.
+fn within(bound: f64) -> Promise {
+    Promise::Within(bound, if bound < 0.25 { 0.0 } else { f64::from(<Recording as PixelFormat>::COLOR_STEP) })
 }
 
 /// Draws a triangle and measures it, or says what promise it breaks.
@@ -109,7 +117,7 @@ fn measure<Q: Quality>(case: &Case, promise: Promise) -> Result<Worst, String> {
                     "attribute {attribute} at {x}, {y}: {value} is not within {low} … {high}"
                 ));
             }
-            let Promise::Within(bound) = promise else { continue };
+            let Promise::Within(bound, levels) = promise else { continue };
             if !reads {
                 continue;
             }
@@ -117,6 +125,10 @@ fn measure<Q: Quality>(case: &Case, promise: Promise) -> Result<Worst, String> {
             let largest = if attribute < 2 { &mut worst.texels } else { &mut worst.color };
             // The measure divides by at least 1, so it takes an error above the largest to raise it.
             if error <= *largest && error <= worst.by_derivative {
+                continue;
+            }
+            if attribute >= 2 && error <= levels {
+                worst.levels = worst.levels.max(error);
                 continue;
             }
             let change = exact.change(attribute);
@@ -182,11 +194,10 @@ impl Dice {
 /// Changes the worst case found at random little by little, keeping what is worse still.
 fn climb<Q: Quality>(mut case: Case, ratio: u32, steps: u32, bound: f64) -> Result<Worst, String> {
     let mut dice = Dice(0x9e37_79b9_7f4a_7c15 ^ u64::from(ratio));
-    let mut worst = measure::<Q>(&case, Promise::Within(bound))?;
+    let mut worst = measure::<Q>(&case, within(bound))?;
     for _ in 0..steps {
         let Some(next) = dice.changed(&case, ratio) else { continue };
-        let found =
-            measure::<Q>(&next, Promise::Within(bound)).map_err(|broken| format!("{broken} for {next:?}"))?;
+        let found = measure::<Q>(&next, within(bound)).map_err(|broken| format!("{broken} for {next:?}"))?;
         if found.texels >= worst.texels {
             (case, worst) = (next, found);
         }
@@ -212,7 +223,7 @@ fn hold<Q: Quality>(name: &str, bound: f64) {
             let label = format!("{name}, {family:?}, w 1 … {ratio}");
             let run = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
                 for_all(&label, each, case(family, ratio), |case| {
-                    let found = measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?;
+                    let found = measure::<Q>(&case, within(bound)).map_err(TestCaseError::fail)?;
                     let mut worst = worst.borrow_mut();
                     if found.texels >= worst.0.texels {
                         worst.1 = Some(case);
@@ -263,9 +274,7 @@ fn affine_stays_within_range_for_12_000_random_triangles_and_is_exact_where_w_is
     for family in FAMILIES {
         let total = RefCell::new(Worst::default());
         for_all(&format!("Affine, {family:?}, w 1 … 1"), 200, case(family, 1), |case| {
-            total
-                .borrow_mut()
-                .join(measure::<Affine>(&case, Promise::Within(0.02)).map_err(TestCaseError::fail)?);
+            total.borrow_mut().join(measure::<Affine>(&case, within(0.02)).map_err(TestCaseError::fail)?);
             Ok(())
         });
         flat.join(total.into_inner());
@@ -285,9 +294,7 @@ fn hold_anything<Q: Quality>(name: &str, bound: f64) {
         let label = format!("{name}, ±8192 texels, w 1 … 2^{}", log2_ratio + 1);
         let total = RefCell::new(Worst::default());
         for_all(&label, 5_000, any_case(log2_ratio), |case| {
-            total
-                .borrow_mut()
-                .join(measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?);
+            total.borrow_mut().join(measure::<Q>(&case, within(bound)).map_err(TestCaseError::fail)?);
             Ok(())
         });
         let total = total.into_inner();
@@ -309,7 +316,7 @@ fn quarter_pixel_holds_for_5_000_triangles_of_any_distances() {
 fn hold_in_meshes<Q: Quality>(name: &str, bound: f64) {
     let total = RefCell::new(Worst::default());
     for_all(&format!("{name}, of a mesh"), 30_000, mesh_case(), |case| {
-        total.borrow_mut().join(measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?);
+        total.borrow_mut().join(measure::<Q>(&case, within(bound)).map_err(TestCaseError::fail)?);
         Ok(())
     });
     let total = total.into_inner();
@@ -353,7 +360,7 @@ fn steep_and_level() -> impl Strategy<Value = Case> {
 fn hold_where_rows_are_steep<Q: Quality>(name: &str, bound: f64) {
     let total = RefCell::new(Worst::default());
     for_all(&format!("{name}, steep rows"), 20_000, steep_and_level(), |case| {
-        total.borrow_mut().join(measure::<Q>(&case, Promise::Within(bound)).map_err(TestCaseError::fail)?);
+        total.borrow_mut().join(measure::<Q>(&case, within(bound)).map_err(TestCaseError::fail)?);
         Ok(())
     });
     let total = total.into_inner();
@@ -405,7 +412,7 @@ fn nearly_level() -> impl Strategy<Value = Case> {
 fn quarter_pixel_holds_where_rows_are_nearly_level_3_000_cases() {
     let total = RefCell::new(Worst::default());
     for_all("nearly level rows", 3_000, nearly_level(), |case| {
-        let found = measure::<QuarterPixel>(&case, Promise::Within(0.25)).map_err(TestCaseError::fail)?;
+        let found = measure::<QuarterPixel>(&case, within(0.25)).map_err(TestCaseError::fail)?;
         total.borrow_mut().join(found);
         Ok(())
     });

@@ -20,9 +20,9 @@ use crate::frame::{NoDepth, PixelFormat, Window};
 use crate::geometry::{Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, VertexColors, piece, position};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
-use crate::raster::{Needs, Rows, Runs, STRAIGHT, Span, TriangleSetup};
+use crate::raster::{Needs, Prepared, Rows, Runs, Span, WIDEST};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Cover, Layers, Material, Run, Shader, Textured, Traits, is_small};
+use crate::shade::{Cover, Layers, Material, Run, Shader, Textured, Traits};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -40,8 +40,7 @@ pub(crate) struct Direct<'a, F: PixelFormat, T, const RUN: usize> {
     /// The rows shown, and as many columns as are shaded.
     window: Window,
     run: [F::Word; RUN],
-    setup: TriangleSetup,
-    rows: Rows,
+    prepared: Prepared,
 }
 
 const _: () = assert!(size_of::<Direct<'_, Rgb565, (), 64>>() <= 560);
@@ -66,8 +65,7 @@ where
         if let Some(viewport) = viewport {
             (shown, window) = (shown.within(viewport), window.within(viewport));
         }
-        let (setup, rows) = (TriangleSetup::new(), Rows::default());
-        Self { target, shown, window, run: [F::rgb565(0); RUN], setup, rows }
+        Self { target, shown, window, run: [F::rgb565(0); RUN], prepared: Prepared::new() }
     }
 
     /// Draws a triangle within the guard band, up to the first error of the display.
@@ -82,20 +80,19 @@ where
         let Some(triangle) = Oriented::new(vertices, cull) else {
             return Ok(());
         };
-        let Self { target, shown, window, run, setup, rows } = self;
-        setup.corners = triangle.vertices.map(position);
-        rows.start(&setup.corners, window);
-        let [[a, _], [b, _], [c, _]] = setup.corners;
+        let [[a, _], [b, _], [c, _]] = triangle.vertices.map(position);
         let [left, right] = Window::centers(a, b, c);
-        if rows.are_none() || left >= shown.columns.end || right <= shown.columns.start {
+        if left >= self.shown.columns.end || right <= self.shown.columns.start {
             return Ok(());
         }
-        let needs: Needs = Traits::of::<F, S>(shader).needs(false, is_orthographic, false);
-        let fits = needs.small && RUN > STRAIGHT as usize;
-        setup.set(&triangle, &needs, fits && rows.are_simple());
-        if fits && is_small(setup, rows) {
+        let needs: Needs = Traits::of::<F, S>(shader).needs::<F>(false, is_orthographic, false);
+        if !self.prepared.set(&triangle, &self.window, &needs) {
+            return Ok(());
+        }
+        if self.prepared.setup.is_patch() && RUN >= WIDEST {
             return self.draw_small(shader);
         }
+        let Self { target, shown, window, run, prepared: Prepared { setup, rows } } = self;
         let mut result = Ok(());
         rows.each(window, |y, start, end| {
             let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
@@ -132,28 +129,28 @@ where
         result
     }
 
-    /// Draws the small triangle that was set up: a row at a time, which fits a run.
+    /// Draws a small triangle: a row at a time, which fits a run.
     #[inline(never)]
     fn draw_small<S: Shader<F>>(&mut self, shader: &S) -> Result<(), T::Error> {
-        let Self { target, shown, window, run, setup, rows } = self;
-        loop {
-            let (y, mut row) = (rows.row(), rows.first());
-            let Some((start, end)) = rows.next() else {
-                return Ok(());
-            };
+        let Self { target, shown, window, run, prepared: Prepared { setup, rows } } = self;
+        let Rows::Short(all) = rows else {
+            return Ok(());
+        };
+        let all = all.clone();
+        for row in all.rows() {
+            let [y, start, end] = all.on_screen(row);
             let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
             if seen.is_empty() {
                 continue;
             }
-            let origin = (start as usize).wrapping_neg();
-            let (rows, pixels) = (&mut row, &mut run[..]);
+            // Of no height, and its first column that of the span.
             shader.paint(&mut Cover::<F, NoDepth> {
                 setup,
-                rows,
+                rows: &mut Rows::Short(all.only(row)),
                 window,
-                origin,
+                origin: (start as usize).wrapping_neg(),
                 width: 0,
-                pixels,
+                pixels: &mut run[..],
                 depth: &mut [],
                 layers: &Layers::OPAQUE,
                 fog: None,
@@ -163,6 +160,7 @@ where
             let colors = words.unwrap_or_default().iter().map(|&word| F::decode(word));
             target.fill_contiguous(&area, colors)?;
         }
+        Ok(())
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
-use crate::raster::{Needs, Rows, Runs, TriangleSetup};
+use crate::raster::{Needs, Prepared, Runs};
 use crate::shade::{Cover, InFog, Look, Surface};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
@@ -43,8 +43,7 @@ pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat> {
     band: &'a mut Band<'b, F, D>,
     window: Window,
     needs: Needs,
-    setup: TriangleSetup,
-    rows: Rows,
+    prepared: Prepared,
 }
 
 impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
@@ -58,8 +57,8 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         window: Window,
         band: &'a mut Band<'b, F, D>,
     ) -> Self {
-        let (setup, rows, needs) = (TriangleSetup::new(), Rows::default(), look.needs(kind, fog.is_some()));
-        Self { look, fog, band, window, needs, setup, rows }
+        let needs = look.needs(kind, fog.is_some());
+        Self { look, fog, band, window, needs, prepared: Prepared::new() }
     }
 
     /// The same for another surface, perhaps in fog, and window.
@@ -81,18 +80,21 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         }
     }
 
-    /// A triangle that is clockwise on the screen, its nearest vertex first.
+    /// A triangle that is clockwise on the screen.
     #[inline]
-    pub(crate) fn draw_in_order(&mut self, vertices: [&ScreenVertex; 3]) {
-        self.setup.corners = vertices.map(position);
-        let area = area(self.setup.corners) as u32;
-        self.draw_placed(&Oriented { vertices, area }, &mut ());
+    pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3]) {
+        let area = area(vertices.map(position)) as u32;
+        self.draw_oriented(&Oriented { vertices, area }, &mut ());
     }
 
+    /// A triangle that is not culled.
     #[inline]
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        self.setup.corners = triangle.vertices.map(position);
-        self.draw_placed(triangle, stats);
+        if !self.prepared.set(triangle, &self.window, &self.needs) {
+            return stats.count(|stats| &mut stats.out_of_sight);
+        }
+        stats.count(|stats| &mut stats.drawn);
+        self.paint();
     }
 
     /// A polygon that is folded.
@@ -110,16 +112,11 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
     }
 
-    /// A triangle whose corners are in the set-up.
-    #[inline(never)]
-    fn draw_placed(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        self.rows.start(&self.setup.corners, &self.window);
-        if self.rows.are_none() {
-            return stats.count(|stats| &mut stats.out_of_sight);
-        }
-        stats.count(|stats| &mut stats.drawn);
-        self.setup.set(triangle, &self.needs, self.needs.small && self.rows.are_simple());
-        let (setup, rows, window) = (&self.setup, &mut self.rows, &self.window);
+    /// The triangle that was set up.
+    #[inline]
+    fn paint(&mut self) {
+        let Prepared { setup, rows } = &mut self.prepared;
+        let window = &self.window;
         let (top, width) = (usize::from(self.band.top), usize::from(self.band.width));
         let origin = 0usize.wrapping_sub(top * width);
         let (pixels, depth) = (&mut *self.band.pixels, &mut *self.band.depth);

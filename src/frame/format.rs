@@ -30,6 +30,10 @@ pub trait PixelFormat: 'static {
     /// The word of three 8-bit channels.
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
 
+    /// The least change of a channel that the format shows, in whole levels of 1/255, 1 … 8: that of its finest channel. Colours of small
+    /// triangles may be off by this; ¼ pixel is the bound of all others.
+    const COLOR_STEP: u8 = 1;
+
     /// The same words, if they are those of [`Rgb565`] on this machine: then loops that are compiled with this crate write them,
     /// however the program is optimised.
     #[doc(hidden)]
@@ -99,6 +103,9 @@ impl PixelFormat for Rgb565 {
         (u16::from(red) & 0xf8) << 8 | (u16::from(green) & 0xfc) << 3 | u16::from(blue) >> 3
     }
 
+    /// Of green.
+    const COLOR_STEP: u8 = 4;
+
     #[inline]
     fn as_rgb565(words: &mut [u16]) -> Option<&mut [u16]> {
         Some(words)
@@ -123,11 +130,21 @@ impl PixelFormat for Rgb565 {
 
     #[inline]
     fn gray(level: u8) -> u16 {
-        // Without masks: two registers less on a Cortex-M0+, 11 cycles per pixel.
-        let level = u16::from(level);
-        (level >> 3) << 11 | (level >> 2) << 5 | level >> 3
+        GRAYS[usize::from(level >> 2)]
     }
 }
+
+/// The words of greys, by the 6 bits of green: 4 cycles less than to put one together, on a Cortex-M0+ as on an M4.
+static GRAYS: [u16; 64] = {
+    let mut grays = [0; 64];
+    let mut green = 0;
+    while green < 64 {
+        let red = green as u16 >> 1;
+        grays[green] = red << 11 | (green as u16) << 5 | red;
+        green += 1;
+    }
+    grays
+};
 
 /// A 16-bit format with its bytes in big-endian order on every machine.
 #[derive(Clone, Copy, Debug)]
@@ -156,6 +173,8 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
     fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
         F::rgb888(red, green, blue).to_be()
     }
+
+    const COLOR_STEP: u8 = F::COLOR_STEP;
 
     const KEEPS: bool = F::KEEPS;
 

@@ -20,7 +20,7 @@ pub(crate) use fan::piece;
 #[cfg(test)]
 pub(crate) use fan::tests::polygon;
 pub use orient::Cull;
-pub(crate) use orient::{Oriented, area, in_order, position};
+pub(crate) use orient::{Oriented, area, clockwise, position};
 pub use screen::{Inputs, RangeError, ScreenVertex};
 pub(crate) use stats::Count;
 pub use stats::Stats;

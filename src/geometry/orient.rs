@@ -48,7 +48,7 @@ impl Cull {
     }
 }
 
-/// A triangle's vertices clockwise on the screen, the nearest first, and twice its area in 1/256 px².
+/// A triangle's vertices clockwise on the screen, and twice its area in 1/256 px².
 pub(crate) struct Oriented<'a> {
     pub(crate) vertices: [&'a ScreenVertex; 3],
     pub(crate) area: u32,
@@ -65,7 +65,12 @@ impl<'a> Oriented<'a> {
     /// A triangle that is not culled, and its [`area`].
     #[inline(always)]
     pub(crate) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
-        Self { vertices: in_order(vertices, area, |vertex| vertex.q.to_bits()), area: area.unsigned_abs() }
+        Self { vertices: clockwise(vertices, area), area: area.unsigned_abs() }
+    }
+
+    /// The same, rotated so that the nearest vertex is first.
+    pub(crate) fn nearest_first(&self) -> Self {
+        Self { vertices: nearest_first(self.vertices), area: self.area }
     }
 }
 
@@ -75,14 +80,17 @@ pub(crate) fn area([[ax, ay], [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> i32 {
     (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 }
 
-/// A triangle's corners in the order in which set-up takes them, by its [`area`], which is not 0: clockwise, then rotated so that
-/// the one with the greatest `q` is first. Of corners with the same q the earlier one is.
+/// A triangle's corners clockwise, by its [`area`], which is not 0.
 #[inline(always)]
-pub(crate) fn in_order<T: Copy>([a, b, c]: [T; 3], area: i32, q: impl Fn(T) -> u32) -> [T; 3] {
-    let [b, c] = if area < 0 { [c, b] } else { [b, c] };
-    if q(b) > q(a) && q(b) >= q(c) {
+pub(crate) fn clockwise<T>([a, b, c]: [T; 3], area: i32) -> [T; 3] {
+    if area < 0 { [a, c, b] } else { [a, b, c] }
+}
+
+/// Corners rotated so that the one with the greatest q is first. Of corners with the same q the earlier one is.
+fn nearest_first([a, b, c]: [&ScreenVertex; 3]) -> [&ScreenVertex; 3] {
+    if b.q > a.q && b.q >= c.q {
         [b, c, a]
-    } else if q(c) > q(a) {
+    } else if c.q > a.q {
         [c, a, b]
     } else {
         [a, b, c]

@@ -14,51 +14,24 @@
 //! All triangles keep u and v in [min, max) of their corners: the range ends 2⁻¹⁶ below the greatest value. And v, which
 //! carries of u move where both are packed, keeps as far from both ends as these can take it.
 
-use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
-use crate::geometry::Oriented;
+use super::triangle::{Needs, TriangleSetup, edges};
+use crate::geometry::ScreenVertex;
 use crate::num::wide;
 
 impl TriangleSetup {
-    /// Limits u and v of a small triangle that does not lean: u below its greatest value, v to its inset.
-    #[inline]
-    pub(super) fn keep_small_inside(&mut self, needs: &Needs) {
-        let [u, v, ..] = &mut self.attributes;
-        if needs.packings[0].is_steep(u.plane.steps[0]) {
-            return self.keep_steep_inside(needs);
-        }
-        u.open_end();
-        v.keep_straight_inside(needs.packings[1].inset.into());
-    }
-
-    /// As [`TriangleSetup::keep_small_inside`], where u repeats within four pixels. A patch then takes v from its plane at
-    /// every pixel. Longer runs of blocks may meet a carry at every second step, for which twice the inset is room: see
-    /// `carries` of [`Packing`](super::packing::Packing).
-    #[cold]
-    #[inline(never)]
-    fn keep_steep_inside(&mut self, needs: &Needs) {
-        self.step_singly();
-        let [u, v, ..] = &mut self.attributes;
-        u.open_end();
-        v.keep_inside(2 * u32::from(needs.packings[1].inset), true);
-    }
-
-    /// Makes a patch evaluate planes at every pixel: no step is added up. It takes any triangle with a short `longest` for a
-    /// bent one, so one that is not gets coefficients of 0.
-    fn step_singly(&mut self) {
-        if self.longest == STRAIGHT {
-            self.attributes.iter_mut().for_each(|attribute| attribute.bend = [0; 3]);
-        }
-        self.longest = 0;
-    }
-
     /// Makes u and v of a triangle that is not small lean, or limits them. `fraction_bits` are those of the slopes in
     /// [`setup`](super::setup), if u and v are exactly straight.
     ///
     /// Where they are not, u may repeat within four pixels somewhere: so twice the inset.
     #[inline(never)]
-    pub(super) fn settle(&mut self, triangle: &Oriented<'_>, needs: &Needs, fraction_bits: Option<i32>) {
+    pub(super) fn settle(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        needs: &Needs,
+        fraction_bits: Option<i32>,
+    ) {
         if let Some(fraction_bits) = fraction_bits {
-            return self.lean_large(triangle, needs, fraction_bits);
+            return self.lean_large(vertices, needs, fraction_bits);
         }
         let [u, v, ..] = &mut self.attributes;
         u.open_end();
@@ -72,22 +45,22 @@ impl TriangleSetup {
     /// step, counted from the middle of what is on the screen, and 1.5 units of the slope, 1.5 · 2^−`bits`, counted from
     /// corner 0.
     #[cold]
-    fn lean_large(&mut self, triangle: &Oriented<'_>, needs: &Needs, bits: i32) {
+    fn lean_large(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs, bits: i32) {
         let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
         if self.sliver {
             // Evaluated by weights where a run begins: off by 4 units at most (24 are allowed). Then half a unit per column.
-            self.lean(triangle, needs, 0, 24 + (width >> 1));
+            self.lean(vertices, needs, 0, 24 + (width >> 1));
         } else if bits < 3 {
             // Slopes of so few fraction bits have triangles within 1024 px of corner 0, or else they would be slivers. So the
             // error at the corners, which `lean` finds, is a good bound, and none within the screen is needed. A step may be
             // off by a unit of the slope or more, which is 2^−`bits` units of the step: `slack` is 5/4 of that, at least 1.
-            self.lean(triangle, needs, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
+            self.lean(vertices, needs, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
         } else {
             let all = (0..2).fold(2, |all, axis| {
                 let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
                 all + a.max(b).max(c) - a.min(b).min(c)
             });
-            self.lean(triangle, needs, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
+            self.lean(vertices, needs, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
         }
     }
 
@@ -106,10 +79,10 @@ impl TriangleSetup {
     /// larger error.
     #[cold]
     #[inline(never)]
-    pub(super) fn lean(&mut self, triangle: &Oriented<'_>, needs: &Needs, slack: u32, most: i32) {
+    pub(super) fn lean(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs, slack: u32, most: i32) {
         self.leans = true;
-        let u = triangle.vertices.map(|vertex| vertex.u.to_bits() << (needs.finer[0] & 31));
-        let v = triangle.vertices.map(|vertex| vertex.v.to_bits() << (needs.finer[1] & 31));
+        let u = vertices.map(|vertex| vertex.u.to_bits() << (needs.finer[0] & 31));
+        let v = vertices.map(|vertex| vertex.v.to_bits() << (needs.finer[1] & 31));
         let carries = self.lean_by(0, &u, needs, [slack, 0], most);
         self.lean_by(1, &v, needs, [slack, carries], most);
     }
@@ -172,7 +145,7 @@ impl TriangleSetup {
         attribute.plane = plane;
         attribute.limit(least, greatest.wrapping_sub(least).max(0) as u32);
         if packing.is_steep(step as i32) {
-            self.step_singly();
+            self.longest = 0;
         }
         packing.carries(step, steps)
     }

@@ -3,13 +3,16 @@
 mod attribute;
 mod depth;
 mod folded;
+mod held;
 mod lean;
 mod packing;
 mod plane;
+mod prepared;
 mod rows;
 mod setup;
 mod small;
 mod span;
+mod spans;
 mod straight;
 mod triangle;
 
@@ -17,7 +20,9 @@ pub(crate) use attribute::{Attribute, Place, short_inverse, towards_zero};
 pub(crate) use depth::{first_visible, visible};
 pub(crate) use folded::{Runs, rows_of_folded};
 pub(crate) use packing::Packing;
+pub(crate) use prepared::Prepared;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;
+pub(crate) use spans::WIDEST;
 pub(crate) use straight::Straight;
-pub(crate) use triangle::{ATTRIBUTES, Needs, STRAIGHT, TriangleSetup};
+pub(crate) use triangle::{ATTRIBUTES, Needs, TriangleSetup};

@@ -15,6 +15,11 @@
 
 use crate::geometry::Inputs;
 
+/// What the plane of a [small](super::small) triangle may be off by, in units of 1/256 of a texel: 2⁻¹⁷ of a range of 2¹⁹ units, and half of one.
+pub(super) const PLANE_MARGIN: u8 = 5;
+/// With what packing rounds down, a unit of 256 texels. From this on coordinates are packed.
+pub(super) const PACKED_MARGIN: u8 = PLANE_MARGIN + 1;
+
 /// How far texture coordinates may be off in the runs of one shader. All lengths are in I16F16, before coordinates are scaled
 /// by `Attribute::scale_log2`. If they are not packed the unit is 1, and no error adds up.
 #[derive(Clone, Copy)]
@@ -47,6 +52,16 @@ impl Packing {
         let unit_log2 = (a.max(b).wrapping_sub(scale_log2) & 15) as u8;
         let turn_log2 = (16 + a).wrapping_sub(scale_log2) as u8;
         Self { unit_log2, inset: (steps / 4 + 3) << unit_log2, steps: steps as u8, turn_log2 }
+    }
+
+    /// How far u and v of plain small triangles keep from the ends of their range, in 1/256 texel: as much as their planes may be off by;
+    /// packed, what that rounds down, and for v as far as carries can take it. Of a texture without scale.
+    pub(crate) fn margins(&self) -> [u8; 2] {
+        if self.steps == 0 {
+            return [PLANE_MARGIN; 2];
+        }
+        let carries = (self.inset >> 8) as u8 + 1;
+        [PACKED_MARGIN, PACKED_MARGIN + carries]
     }
 
     /// The same for coordinates with `log2` more fraction bits.

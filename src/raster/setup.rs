@@ -52,8 +52,8 @@
 use super::attribute::Attribute;
 use super::plane::Plane;
 use super::straight::{Bend, Straight};
-use super::triangle::{Needs, STRAIGHT, TriangleSetup, edges};
-use crate::geometry::{Inputs, Oriented, is_gray};
+use super::triangle::{Needs, TriangleSetup, edges};
+use crate::geometry::{Inputs, Oriented, position};
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_round, normalise, shift_round_short, wide};
 
@@ -160,51 +160,41 @@ struct Bent<'a> {
 }
 
 impl TriangleSetup {
-    #[inline]
-    pub(crate) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
-        self.sliver = false;
-        self.leans = false;
-        self.is_small = true;
-        self.longest = STRAIGHT;
+    /// Sets all planes of any triangle, the nearest vertex of which is first.
+    #[inline(never)]
+    pub(crate) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+        self.corners = triangle.vertices.map(position);
+        (self.is_small, self.sliver, self.leans) = (false, false, false);
         if needs.inputs == Inputs::None && !needs.depth {
             self.straight = true;
             return;
         }
-        if matches!(needs.inputs, Inputs::Color | Inputs::UvColor) {
-            self.gray = needs.gray || triangle.vertices.into_iter().all(|vertex| is_gray(vertex.color));
+        if needs.reads_color() {
+            self.set_gray(&triangle.vertices, needs);
         }
-        if needs.scale_log2[0] > 0 && needs.packings[0].inset > 0 {
-            return self.set_scaled(triangle, needs, simple);
+        if needs.scale != 0 && needs.packings[0].inset > 0 {
+            return self.set_scaled(triangle, needs);
         }
-        if !self.set_small_planes(triangle, needs, simple) {
-            self.set_any_planes(triangle, needs);
-        }
+        self.set_planes(triangle, needs);
     }
 
     /// Where texture coordinates are scaled, as much of the scale as there is room for goes into planes: for their rounding is
     /// multiplied by the rest of it. What is beyond ±32768 wraps, as it would if it were scaled at the end.
     #[cold]
     #[inline(never)]
-    fn set_scaled(&mut self, triangle: &Oriented<'_>, needs: &Needs, simple: bool) {
+    fn set_scaled(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         let [a, b, c] = triangle.vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        let sizes = [0, 1].map(|i| {
-            (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs()
+        let finer = [0, 1].map(|i| {
+            let size =
+                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
+            // Differences stay below 2²⁹.
+            size.leading_zeros().saturating_sub(3).min(needs.scale)
         });
-        // Differences stay below 2²⁷ in a small triangle, and 2²⁹ in any other.
-        let within = |bits: u32| {
-            let finer =
-                [0, 1].map(|i| sizes[i].leading_zeros().saturating_sub(32 - bits).min(needs.scale_log2[i]));
-            let scale_log2 = [0, 1].map(|i| needs.scale_log2[i] - finer[i]);
-            Needs { finer, scale_log2, packings: [0, 1].map(|i| needs.packings[i].finer(finer[i])), ..*needs }
-        };
-        if !self.set_small_planes(triangle, &within(27), simple) {
-            self.set_any_planes(triangle, &within(29));
-        }
+        self.set_planes(triangle, &needs.finer(finer));
     }
 
     #[inline(never)]
-    fn set_any_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        self.is_small = false;
+    fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         self.area = Reciprocal::precise(triangle.area);
         let mut slopes = Slopes::new(self, triangle.area);
         let near_w = triangle.vertices.map(|vertex| vertex.q.to_bits());
@@ -232,7 +222,7 @@ impl TriangleSetup {
             _ => true,
         };
         if self.straight {
-            needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+            needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
                 let attribute = &mut self.attributes[i];
                 let rise = attribute.set_range(at, scale_log2);
                 attribute.plane.origin = attribute.origin();
@@ -240,7 +230,7 @@ impl TriangleSetup {
                 true
             });
             if needs.packings[0].inset > 0 {
-                self.settle(triangle, needs, is_exact.then_some(slopes.fraction_bits));
+                self.settle(&triangle.vertices, needs, is_exact.then_some(slopes.fraction_bits));
             }
             return;
         }
@@ -248,7 +238,7 @@ impl TriangleSetup {
         self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
         let reciprocal = self.set_q_step(needs.every_pixel);
         let bent = Bent { slopes: &slopes, q, reciprocal, needs };
-        needs.each_attribute(triangle, self.gray, |i, at, scale_log2| {
+        needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
             self.set_bent_attribute(i, &at, scale_log2, &bent);
             true
         });
@@ -257,7 +247,7 @@ impl TriangleSetup {
     /// Whether linear interpolation will do for all attributes, from q at the corners.
     #[inline]
     fn is_straight(&self, q: &[u32; 3], limit: u32) -> bool {
-        Bend::new(&edges(&self.corners), *q, self.q_min).is_some_and(|bend| bend.is_straight(limit))
+        Bend::new(&edges(&self.corners), *q).is_some_and(|bend| bend.is_straight(limit))
     }
 
     /// What a row needs for perspective, besides planes and horizons: the step of q along it, normalised. Returns its reciprocal.

@@ -2,7 +2,7 @@
 //!
 //! - In: the edges of a triangle and q at its corners; to ask for one attribute, also how that changes along the edges.
 //! - Out: whether linear interpolation is exact enough; else the numbers of which [`small`](super::small) makes a quadratic.
-//! - Assumes: corner 0 is the nearest, so its q is the greatest.
+//! - Assumes: q is below 2³¹.
 //!
 //! Where q varies by a quarter of its least value or more, a triangle never counts as straight (except in
 //! [`Affine`](crate::Affine), where all do).
@@ -51,6 +51,8 @@ pub(crate) struct Bend {
     lengths: [u32; 3],
     /// |Δq|/q_min of each edge, 16 fraction bits, rounded up from less than ¼.
     falls: [u32; 3],
+    /// Whether q rises from corner 0 to corner 1, and to corner 2.
+    rises: [bool; 2],
     /// 1/q_min = `reciprocal` · 2^(`zeros` − 48); 2¹⁶ … 2¹⁷.
     reciprocal: u32,
     /// The leading zeros of q_min.
@@ -58,14 +60,15 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
-    /// From the edges as [`edges`](super::triangle::edges) has them, q at the corners, below 2³¹, and the least of these.
-    /// `None` if q varies by a quarter of the least or more.
+    /// From the edges as [`edges`](super::triangle::edges) has them, and q at the corners, below 2³¹. `None` if q varies by a
+    /// quarter of the least or more.
     ///
     /// Entry 0 of `across` and `down` is the gradient of corner 1's weight. That is made of the differences of the opposite
     /// edge, 02. Likewise entry 1 has those of edge 01, and the sum of both is edge 12.
     #[inline]
-    pub(crate) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], least: u32) -> Option<Self> {
-        if q0 - least >= least >> 2 {
+    pub(crate) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3]) -> Option<Self> {
+        let (least, most) = (q0.min(q1).min(q2), q0.max(q1).max(q2));
+        if most - least >= least >> 2 {
             return None;
         }
         let (reciprocal, zeros) = short_of(least);
@@ -77,8 +80,9 @@ impl Bend {
                 length(across[0] + across[1], down[0] + down[1]),
             ],
             // 14 bits of Δq times 17 bits of the reciprocal.
-            falls: [q0 - q1, q0 - q2, q1.abs_diff(q2)]
+            falls: [q0.abs_diff(q1), q0.abs_diff(q2), q1.abs_diff(q2)]
                 .map(|fall| (((((fall << zeros) >> 16) + 1) * reciprocal) >> 16) + 1),
+            rises: [q1 > q0, q2 > q0],
             reciprocal,
             zeros,
         })
@@ -90,21 +94,13 @@ impl Bend {
     ///
     /// length · Δq/q_min ≤ limit is tested as length · Δq ≤ limit · q_min, with Δq rounded up and q_min down.
     #[inline(always)]
-    pub(crate) fn is_needless(
-        [across, down]: &[[i32; 2]; 2],
-        [q0, q1, q2]: [u32; 3],
-        least: u32,
-        limit: u32,
-    ) -> bool {
-        if q0 - least >= least >> 2 {
-            return false;
-        }
+    pub(crate) fn is_needless([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3], limit: u32) -> bool {
         // Both sides in 1/16 px · 2¹² units of q. This one: 15 bits times 16. The other one: 12 bits times 15 and a bit.
-        let most = ((least >> 16) * limit) >> 8;
+        let most = ((q0.min(q1).min(q2) >> 16) * limit) >> 8;
         let is_short =
             |x: i32, y: i32, fall: u32| (x.unsigned_abs() + y.unsigned_abs()) * ((fall >> 12) + 1) <= most;
-        is_short(across[1], down[1], q0 - q1)
-            && is_short(across[0], down[0], q0 - q2)
+        is_short(across[1], down[1], q0.abs_diff(q1))
+            && is_short(across[0], down[0], q0.abs_diff(q2))
             && is_short(across[0] + across[1], down[0] + down[1], q1.abs_diff(q2))
     }
 
@@ -115,13 +111,12 @@ impl Bend {
         self.lengths.iter().zip(self.falls).all(|(length, fall)| length * fall <= limit << 4)
     }
 
-    /// Whether linear interpolation will do for one attribute: more exact than [`Bend::is_straight`], which has to be right
-    /// for all.
+    /// Whether linear interpolation will do for a texture coordinate: more exact than [`Bend::is_straight`],
+    /// which has to be right for all.
     ///
-    /// `rise` is its change from corner 0 to corners 1 and 2, I16F16, below 2²⁷. `unit` is one texel or one level of a colour
-    /// in I16F16, which M counts as at least. |Δx| + |Δy| of all edges is below 2¹² sixteenths.
-    #[inline]
-    pub(crate) fn is_straight_for(&self, limit: u32, rise: [i32; 2], unit: u32) -> bool {
+    /// `rise` is its change from corner 0 to corners 1 and 2, I16F16, below 2²⁷. |Δx| + |Δy| of all edges is below 2¹² sixteenths.
+    #[inline(never)]
+    pub(crate) fn is_straight_for(&self, limit: u32, rise: [i32; 2]) -> bool {
         let rises = [rise[0], rise[1], rise[1] - rise[0]].map(i32::unsigned_abs);
         // 4 · error as a difference of u: the largest |Δu| · fall, so at most a quarter of a rise. Then 8 fraction bits,
         // rounded up.
@@ -131,21 +126,28 @@ impl Bend {
         // The exact u changes by (Δu·q̄ + (ū − u)·Δq) / q per length of an edge, where q̄ and ū are the means of its ends.
         // The error is divided by the same q, so that cancels; the rest is at least (|Δu| − range · fall) · q_min.
         let least = |i: usize| rises[i].saturating_sub(mul_16(range, self.falls[i]) as u32);
-        error <= ((unit >> 8) * (limit >> 8)) >> 8
+        // A texel, which M counts as at least.
+        error <= limit >> 8
             || (0..3).any(|i| error * self.lengths[i] <= ((least(i) >> 8) * (limit >> 8)) >> 4)
     }
 
-    /// |Δq| from corner 0 to corner `i` + 1, divided by q_mid = (q_min + q_max)/2; 16 fraction bits.
+    /// By how much q rises from corner 0 to corner `i` + 1, divided by q_mid = (q_min + q_max)/2; 16 fraction bits.
     #[inline]
-    pub(crate) fn fall(&self, i: usize) -> u32 {
-        (self.falls[i] * self.to_middle()) >> 15
+    pub(crate) fn rise(&self, i: usize) -> i32 {
+        let size = ((self.falls[i] * self.to_middle()) >> 15) as i32;
+        if self.rises[i] { size } else { -size }
     }
 
-    /// q_min/q_mid with 15 fraction bits: 1/(1 + f/2) ≈ 1 − f/2, f being the larger fall from corner 0. At most 1/64 too
-    /// small.
+    /// The largest fall of an edge: what q varies by.
+    #[inline]
+    fn most(&self) -> u32 {
+        self.falls[0].max(self.falls[1]).max(self.falls[2])
+    }
+
+    /// q_min/q_mid with 15 fraction bits: 1/(1 + f/2) ≈ 1 − f/2, f being what q varies by. At most 1/64 too small.
     #[inline]
     fn to_middle(&self) -> u32 {
-        (1 << 15) - (self.falls[0].max(self.falls[1]) >> 2)
+        (1 << 15) - (self.most() >> 2)
     }
 
     /// From the change of q per column and per row: the same divided by q_mid, 16 fraction bits, within ±¼. `None` where a
@@ -153,7 +155,7 @@ impl Bend {
     /// eighth).
     #[inline]
     pub(crate) fn slopes(&self, steps: [i32; 2]) -> Option<[i32; 2]> {
-        let most = self.falls[0].max(self.falls[1]);
+        let most = self.most();
         // The quadratic is off by length · fall²/8 (see `small`). That has to be 3/32 pixel at most: length · fall² ≤ 3/4
         // pixel, in 1/16 px with 16 fraction bits. Any edge may be the one that counts: so the longest with the largest fall.
         let longest = self.lengths[0].max(self.lengths[1]).max(self.lengths[2]);

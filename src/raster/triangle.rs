@@ -4,7 +4,7 @@ use super::attribute::Attribute;
 use super::packing::Packing;
 use super::plane::Plane;
 use super::straight::Straight;
-use crate::geometry::{Inputs, Oriented, ScreenVertex};
+use crate::geometry::{Inputs, ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_round, normalise, shift_round, wide};
 
@@ -14,10 +14,11 @@ pub(crate) const STRAIGHT: i32 = 31;
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(crate) const ATTRIBUTES: usize = 5;
 
-/// A triangle ready to be cut into spans: corners clockwise on the screen, the nearest first.
+/// A triangle ready to be cut into spans.
 #[derive(Debug)]
 pub(crate) struct TriangleSetup {
-    /// x and y in 1/16 px.
+    /// x and y in 1/16 px, clockwise on the screen; of a small triangle that is not held they are not set. The nearest is first, of a small
+    /// triangle the uppermost.
     pub(crate) corners: [[i32; 2]; 3],
     /// 1 / (twice the area in 1/256 px²); not of small triangles.
     pub(super) area: Reciprocal,
@@ -25,9 +26,14 @@ pub(crate) struct TriangleSetup {
     pub(crate) gray: bool,
     /// Whether planes hold values at corners: a sliver, or of very different distances.
     pub(crate) sliver: bool,
-    /// Whether it is set up as a small one: no sliver, and its depth never below 1 of 2¹⁶.
+    /// Whether it is set up as a [small](super::small) one: no sliver, and its depth never below 1 of 2¹⁶.
     pub(crate) is_small: bool,
-    /// Whether attributes are linear on the screen, or nearly, or with what they bend by: planes hold them as they are.
+    /// Of a small one: whether attributes are [held](super::held) in their range. Else planes are of the attributes themselves, as I16F16
+    /// with all of the scale.
+    pub(crate) is_held: bool,
+    /// Of a small one: whether u and v are quadratics, and held.
+    pub(crate) is_bent: bool,
+    /// Of one that is not small: whether attributes are linear on the screen, or nearly, so that planes hold them as they are.
     pub(crate) straight: bool,
     /// Whether they are so exactly, and texture coordinates [lean](TriangleSetup::lean).
     pub(crate) leans: bool,
@@ -37,7 +43,7 @@ pub(crate) struct TriangleSetup {
     pub(crate) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(crate) q: Plane,
-    /// Of a bent triangle: how many steps along a row attributes are nearly linear.
+    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear.
     pub(crate) longest: i32,
     /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
     /// step is below 2¹².
@@ -60,14 +66,19 @@ pub(crate) struct Needs {
     pub(crate) straight: Straight,
     /// Whether perspective is exact at every pixel.
     pub(crate) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8 together: before planes are made of them (see [`TriangleSetup::set`]),
-    /// and at the end.
+    /// u and v are multiplied by 2^this, 0 … 8.
+    pub(crate) scale: u32,
+    /// Of that, as much before planes are made of them (see [`TriangleSetup::set`]), and the rest at the end.
     pub(crate) finer: [u32; 2],
     pub(crate) scale_log2: [u32; 2],
-    /// How u and v are packed.
+    /// How u and v are packed, before they are scaled.
     pub(crate) packings: [Packing; 2],
-    /// Whether a small triangle is drawn at one go, so that its attributes may be bent.
-    pub(crate) small: bool,
+    /// How they are packed with all of the scale, as small triangles have it.
+    pub(crate) packing: Packing,
+    /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
+    pub(crate) margins: [u8; 2],
+    /// How much a colour may be off by, in levels of 1/255: a step of the format's finest channel.
+    pub(crate) color_step: u32,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
@@ -81,20 +92,41 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
+    /// Whether u and v are read.
+    #[inline]
+    pub(crate) fn reads_uv(&self) -> bool {
+        matches!(self.inputs, Inputs::Uv | Inputs::UvColor)
+    }
+
+    /// Whether the colour is read.
+    #[inline]
+    pub(crate) fn reads_color(&self) -> bool {
+        matches!(self.inputs, Inputs::Color | Inputs::UvColor)
+    }
+
+    /// The same with so much of the scale before planes are made.
+    pub(super) fn finer(&self, finer: [u32; 2]) -> Self {
+        let scale_log2 = finer.map(|finer| self.scale - finer);
+        Self { finer, scale_log2, packings: [0, 1].map(|i| self.packings[i].finer(finer[i])), ..*self }
+    }
+
+    /// The same with all of the scale before planes are made.
+    #[inline(never)]
+    pub(super) fn scaled(&self) -> Self {
+        self.finer([self.scale; 2])
+    }
+
     /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
     /// v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
     #[inline]
     pub(crate) fn each_attribute(
         &self,
-        triangle: &Oriented<'_>,
+        vertices: &[&ScreenVertex; 3],
         gray: bool,
         mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
     ) -> bool {
-        let vertices = triangle.vertices;
-        let uv = matches!(self.inputs, Inputs::Uv | Inputs::UvColor);
-        let color = matches!(self.inputs, Inputs::Color | Inputs::UvColor);
-        let first = if uv { 0 } else { 2 };
-        let end = if !color {
+        let first = if self.reads_uv() { 0 } else { 2 };
+        let end = if !self.reads_color() {
             2
         } else if gray {
             3
@@ -121,6 +153,8 @@ impl TriangleSetup {
             gray: false,
             sliver: false,
             is_small: false,
+            is_held: false,
+            is_bent: false,
             straight: false,
             leans: false,
             is_extreme: false,
@@ -134,6 +168,18 @@ impl TriangleSetup {
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
+    }
+
+    /// Finds out whether all colours are grey.
+    #[inline]
+    pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs) {
+        self.gray = needs.gray || vertices.iter().all(|vertex| is_gray(vertex.color));
+    }
+
+    /// Whether it is small and may be drawn at one go.
+    #[inline]
+    pub(crate) fn is_patch(&self) -> bool {
+        self.is_small && !self.is_held
     }
 
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.

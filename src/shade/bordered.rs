@@ -51,7 +51,6 @@ macro_rules! bordered_kinds {
         impl Kind for $kind {
             const INPUTS: Inputs = Inputs::Uv;
             const IS_PACKED: bool = true;
-            const HAS_SMALL: bool = false;
 
             fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
                 let [u, v] = texel_of(varying);
@@ -67,7 +66,6 @@ macro_rules! bordered_kinds {
         impl Kind for $lit {
             const INPUTS: Inputs = Inputs::UvColor;
             const IS_PACKED: bool = true;
-            const HAS_SMALL: bool = false;
 
             fn color<F: PixelFormat>(recipe: &Recipe<'_>, varying: &Varying) -> F::Word {
                 let [u, v] = texel_of(varying);

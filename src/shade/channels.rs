@@ -10,11 +10,12 @@
 //! With 8 fraction bits steps are cut towards zero. So after 16 pixels of a straight line a channel is off by at most 1/16 of
 //! 1/255, its unit. That is how long a line may be before it starts anew.
 
+use super::fill::Steps;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
 
 /// `M` packed channels: the values at a pixel, or steps.
-pub(crate) trait Channels<const M: usize>: Copy {
+pub(crate) trait Channels<const M: usize>: Steps {
     /// How many of the 16 fraction bits are dropped.
     const DROPPED: u32;
     /// Log₂ of the longest line, in pixels. If bits are dropped a longer one is drawn as several, each of which starts
@@ -23,9 +24,6 @@ pub(crate) trait Channels<const M: usize>: Copy {
 
     /// Packs channels whose bits are dropped already.
     fn pack(channels: [i32; M]) -> Self;
-
-    /// The sum, channel by channel, wrapping.
-    fn plus(self, other: Self) -> Self;
 
     /// The values at a pixel, from I16F16.
     #[inline]
@@ -62,6 +60,13 @@ pub(crate) trait Channels<const M: usize>: Copy {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gray(i32);
 
+impl Steps for Gray {
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        Self(self.0.wrapping_add(step.0))
+    }
+}
+
 impl Channels<1> for Gray {
     const DROPPED: u32 = 0;
     const RUN_LOG2: u32 = 5;
@@ -69,11 +74,6 @@ impl Channels<1> for Gray {
     #[inline]
     fn pack([gray]: [i32; 1]) -> Self {
         Self(gray)
-    }
-
-    #[inline]
-    fn plus(self, other: Self) -> Self {
-        Self(self.0.wrapping_add(other.0))
     }
 
     #[inline]
@@ -101,6 +101,13 @@ impl Channels<1> for Gray {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RedBlueGreen(i32, i32);
 
+impl Steps for RedBlueGreen {
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        Self(self.0.wrapping_add(step.0), self.1.wrapping_add(step.1))
+    }
+}
+
 impl Channels<3> for RedBlueGreen {
     const DROPPED: u32 = 8;
     const RUN_LOG2: u32 = 4;
@@ -109,11 +116,6 @@ impl Channels<3> for RedBlueGreen {
     fn pack([red, green, blue]: [i32; 3]) -> Self {
         // A negative step of blue borrows from red. Blue itself is never negative at a pixel, so there red is whole again.
         Self((red << 16).wrapping_add(blue), green)
-    }
-
-    #[inline]
-    fn plus(self, other: Self) -> Self {
-        Self(self.0.wrapping_add(other.0), self.1.wrapping_add(other.1))
     }
 
     #[inline]

@@ -6,10 +6,9 @@
 
 use super::channels::Channels;
 use super::curve::{Curve, Ts};
-use super::fill::{Fill, FillRow, some_of};
-use super::row::Row;
+use super::fill::{Fill, FillRow, draw_row, some_of};
 use super::units::Units;
-use crate::frame::{DepthFormat, PixelFormat};
+use crate::frame::PixelFormat;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -77,15 +76,10 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M,
 
 impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F, C> {
     type Word = F::Word;
+    const BENDS: bool = false;
 
     #[inline]
-    fn longest_row(&self) -> i32 {
-        (1 << C::RUN_LOG2) - 1
-    }
-
-    #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, at: [i32; M], step: [i32; M]) {
-        let step = C::step(step);
-        row.draw(C::place(at), |at| at.plus(step), |at| at.word::<F>());
+    fn row(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M]) {
+        draw_row(pixels, C::place(at), C::step(step), |at| at.word::<F>());
     }
 }

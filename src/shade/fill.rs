@@ -10,10 +10,8 @@
 
 use super::curve::{Curve, distance};
 use super::quality::Quality;
-use super::row::Row;
 use super::units::{Form, Units};
-use crate::frame::DepthFormat;
-use crate::raster::{ATTRIBUTES, STRAIGHT};
+use crate::raster::ATTRIBUTES;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -35,18 +33,57 @@ pub trait Fill<W> {
     fn chords(&self, _pixels: &mut [W], _curve: &Curve) {}
 }
 
-/// A fill of a small triangle's rows, some pixels of which may be hidden, from `N` attributes.
+/// A fill of a small triangle's rows, from `N` attributes.
 pub trait FillRow<const N: usize> {
     type Word;
 
-    /// The longest [`FillRow::row`] that is exact enough, in steps.
-    #[inline]
-    fn longest_row(&self) -> i32 {
-        STRAIGHT
-    }
+    /// Whether the first two attributes may be texture coordinates, which may be bent.
+    const BENDS: bool = N > 1;
 
-    /// A row, with attributes in I16F16 at its first pixel, and the step of each, both without the row's `scale_log2`.
-    fn row<D: DepthFormat>(&self, row: Row<'_, Self::Word, D>, at: [i32; N], step: [i32; N]);
+    /// At most 32 pixels side by side, from attributes in I16F16 at the first of them and their steps.
+    fn row(&self, pixels: &mut [Self::Word], at: [i32; N], step: [i32; N]);
+}
+
+/// What can be stepped from pixel to pixel.
+pub(crate) trait Steps: Copy {
+    /// A step further.
+    fn plus(self, step: Self) -> Self;
+}
+
+impl Steps for () {
+    fn plus(self, (): ()) {}
+}
+
+impl Steps for u32 {
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        self.wrapping_add(step)
+    }
+}
+
+impl<const N: usize> Steps for [i32; N] {
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        plus(self, step)
+    }
+}
+
+impl<A: Steps, B: Steps> Steps for (A, B) {
+    #[inline]
+    fn plus(self, step: Self) -> Self {
+        (self.0.plus(step.0), self.1.plus(step.1))
+    }
+}
+
+/// Draws pixels side by side, each of which `word` makes of attributes.
+#[inline(always)]
+pub(crate) fn draw_row<W, A: Steps>(pixels: &mut [W], mut at: A, step: A, word: impl Fn(A) -> W) {
+    for pixel in pixels {
+        *pixel = word(at);
+        at = at.plus(step);
+        // Not unrolled, which does not pay for a few pixels.
+        black_box(());
+    }
 }
 
 #[inline]
@@ -102,10 +139,8 @@ impl<const N: usize, Q, W, C: Fn([i32; N]) -> W> FillRow<N> for Each<N, Q, W, C>
     type Word = W;
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, W, D>, at: [i32; N], step: [i32; N]) {
-        let [at, step]: [[i32; N]; 2] =
-            [at, step].map(|value| core::array::from_fn(|i| value[i] << row.scale_log2(i)));
-        row.draw(at, |at| plus(at, step), |at| (self.0)(at));
+    fn row(&self, pixels: &mut [W], at: [i32; N], step: [i32; N]) {
+        draw_row(pixels, at, step, |at| (self.0)(at));
     }
 }
 
@@ -130,7 +165,7 @@ impl<W: Copy> FillRow<0> for Even<W> {
     type Word = W;
 
     #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, W, D>, _: [i32; 0], _: [i32; 0]) {
-        row.draw((), |()| (), |()| self.0);
+    fn row(&self, pixels: &mut [W], _: [i32; 0], _: [i32; 0]) {
+        draw_row(pixels, (), (), |()| self.0);
     }
 }

@@ -29,10 +29,6 @@ pub trait Kind: Sealed + 'static {
     /// Whether its texture may be packed.
     #[doc(hidden)]
     const IS_PACKED: bool = false;
-    /// Whether it has a loop for small triangles.
-    #[doc(hidden)]
-    const HAS_SMALL: bool = true;
-
     /// Writes how opaque the vertices make pixels, if they do.
     #[doc(hidden)]
     #[must_use]

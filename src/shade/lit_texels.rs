@@ -6,14 +6,15 @@
 
 use super::channels::{Channels, lit};
 use super::curve::Curve;
-use super::fill::{Fill, FillRow, plus};
+use super::fill::{Fill, FillRow};
 use super::light::Light;
-use super::packed::{longest_row_of, packed_from, packed_step, shifted};
-use super::row::Row;
+use super::packed::draw_texels;
 use super::texels::Texels;
 use super::units::Units;
-use crate::frame::{DepthFormat, PixelFormat};
+use crate::frame::PixelFormat;
+use crate::num::IS_ARMV6M;
 use crate::scene::Texture;
+use core::hint::black_box;
 use core::marker::PhantomData;
 
 /// Texels times `M` channels of light.
@@ -64,52 +65,43 @@ macro_rules! fill_row_of_lit_texels {
             type Word = F::Word;
 
             #[inline]
-            fn longest_row(&self) -> i32 {
-                longest_row_of(self.texture, self.is_packed).min((1 << C::RUN_LOG2) - 1)
-            }
-
-            #[inline]
-            fn row<D: DepthFormat>(
+            fn row(
                 &self,
-                row: Row<'_, F::Word, D>,
+                pixels: &mut [F::Word],
                 [u, v, light @ ..]: [i32; $n],
                 [u_step, v_step, light_step @ ..]: [i32; $n],
             ) {
-                self.row_of(row, ([u, v], [u_step, v_step]), (light, light_step));
+                let (light, light_step) = (C::place(light), C::step(light_step));
+                let (at, step) = ([u, v], [u_step, v_step]);
+                let (texture, is_packed) = (self.texture, self.is_packed);
+                if IS_ARMV6M && F::KEEPS {
+                    draw_texels(texture, is_packed, pixels, (at, ()), (step, ()), |texel, ()| {
+                        F::rgb565(texel)
+                    });
+                    return light_row::<$m, F, C>(pixels, light, light_step);
+                }
+                draw_texels(
+                    texture,
+                    is_packed,
+                    pixels,
+                    (at, light),
+                    (step, light_step),
+                    |texel, light: C| lit::<F>(texel, light.rgb()),
+                );
             }
         }
     };
 }
 
-fill_row_of_lit_texels!(3, 1);
-fill_row_of_lit_texels!(5, 3);
-
-impl<const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'_, M, F, C> {
-    #[inline]
-    fn row_of<D: DepthFormat>(
-        &self,
-        row: Row<'_, F::Word, D>,
-        ([u, v], [u_step, v_step]): ([i32; 2], [i32; 2]),
-        (light, light_step): ([i32; M], [i32; M]),
-    ) {
-        let light_step = C::step(light_step);
-        let light = C::place(light);
-        if !self.is_packed {
-            let up = |[u, v]: [i32; 2]| [u << row.scale_log2(0), v << row.scale_log2(1)];
-            let (at, step) = (up([u, v]), up([u_step, v_step]));
-            return row.draw(
-                (at, light),
-                |(at, light)| (plus(at, step), light.plus(light_step)),
-                |([u, v], light)| lit::<F>(self.texture.fetch_repeat(u >> 16, v >> 16), light.rgb()),
-            );
-        }
-        let [a, b] = self.texture.log2();
-        let [a, b] = [a.wrapping_sub(row.scale_log2(0)) & 31, b.wrapping_sub(row.scale_log2(1)) & 31];
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let first = packed_from([u >> a, v >> b], u_step);
-        let plus = |light: C| light.plus(light_step);
-        row.draw_texels(self.texture, [first, step], light, plus, |texel, light| {
-            lit::<F>(texel, light.rgb())
-        });
+/// Light on texels that are there already.
+#[inline(always)]
+fn light_row<const M: usize, F: PixelFormat, C: Channels<M>>(pixels: &mut [F::Word], mut light: C, step: C) {
+    for pixel in pixels {
+        *pixel = lit::<F>(F::texel(*pixel), light.rgb());
+        light = light.plus(step);
+        black_box(());
     }
 }
+
+fill_row_of_lit_texels!(3, 1);
+fill_row_of_lit_texels!(5, 3);

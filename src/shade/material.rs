@@ -311,10 +311,6 @@ impl<F: PixelFormat, K: Kind, Q: Quality> Shader<F> for Material<'_, K, Q> {
             .then(|| self.recipe.texture.log2())
     }
 
-    fn has_small(&self) -> bool {
-        K::HAS_SMALL
-    }
-
     fn coloring(&self) -> Coloring {
         self.coloring
     }

@@ -1,7 +1,8 @@
 //! Texture coordinates packed in one word, so that one addition steps both, and the texels at them.
 
 use super::curve::Linear;
-use crate::raster::{ATTRIBUTES, STRAIGHT};
+use super::fill::{Steps, draw_row};
+use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 
 /// The texel at packed coordinates of a texture of so many.
@@ -31,12 +32,6 @@ pub(crate) fn lines_of(texture: &Texture<'_>, [u, v, ..]: &[Linear; ATTRIBUTES])
     [if a == 0 { none } else { *u }, if b == 0 { none } else { *v }]
 }
 
-/// `Fill::longest_row` of texels. Packed, a step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel.
-#[inline]
-pub(crate) fn longest_row_of(texture: &Texture<'_>, is_packed: bool) -> i32 {
-    if is_packed && texture.is_large() { 15 } else { STRAIGHT }
-}
-
 /// The place of a run, whose first step of u is negative or not.
 #[inline]
 pub(crate) fn packed_from([u, v]: [i32; 2], u_step: i32) -> u32 {
@@ -60,4 +55,35 @@ pub(crate) fn turned(u_step: i32) -> i32 {
 #[inline]
 pub(crate) fn shifted(step: i32, log2: u32) -> i32 {
     (step + ((step >> 31) & ((1 << log2) - 1))) >> log2
+}
+
+/// Draws a row of a small triangle with texels, u and v in I16F16. `other` is whatever else a word is made of, and steps as well.
+///
+/// For 4096 and 1024 texels the compiler knows that no index lies outside: nothing is checked.
+#[inline(always)]
+pub(crate) fn draw_texels<W, P: Steps>(
+    texture: &Texture<'_>,
+    is_packed: bool,
+    pixels: &mut [W],
+    (at, other): ([i32; 2], P),
+    (step, other_step): ([i32; 2], P),
+    word: impl Fn(u16, P) -> W,
+) {
+    if !is_packed {
+        return draw_row(pixels, (at, other), (step, other_step), |([u, v], other)| {
+            word(texture.fetch_repeat(u >> 16, v >> 16), other)
+        });
+    }
+    let [a, b] = texture.log2().map(|log2| log2 & 31);
+    let at = (packed_from([at[0] >> a, at[1] >> b], step[0]), other);
+    let step = (packed_step([shifted(step[0], a), shifted(step[1], b)]), other_step);
+    if let Ok(texels) = <&[u16; 0x1000]>::try_from(texture.texels()) {
+        let texel = sized(texture, texels);
+        draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
+    } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texture.texels()) {
+        let texel = sized(texture, texels);
+        draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
+    } else {
+        draw_row(pixels, at, step, |(at, other)| word(texture.fetch_packed(at), other));
+    }
 }

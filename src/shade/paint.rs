@@ -9,7 +9,6 @@ use super::cover::Cover;
 use super::fill::{Even, Fill, FillRow};
 use super::layered::draw_some;
 use super::opaque;
-use super::patch::is_small;
 use super::quality::Quality;
 use super::quality::sealed::Sealed;
 use super::shader::Pixels;
@@ -64,7 +63,7 @@ where
 {
     if let Some(draw) = cover.drawn_by() {
         draw(cover, fill);
-    } else if is_small(cover.setup, cover.rows) {
+    } else if cover.setup.is_patch() {
         cover.draw_small(fill);
     } else {
         opaque::draw(cover, fill);

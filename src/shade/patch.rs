@@ -1,36 +1,31 @@
 //! A patch: a small triangle drawn at one go, all rows of it.
 //!
-//! - In: a small triangle that is set up, its rows, and the memory of a band.
+//! - In: a small triangle that is set up, its spans, and the memory of a band.
 //! - Out: words and depths where the triangle is in front.
-//! - Assumes: the triangle is straight (or one quadratic), at most 32 pixels wide and less high.
+//! - Assumes: near/w is 2⁻¹⁶ or more all over the triangle, as set-up makes sure for small ones.
 //!
-//! A row of such a triangle has two or three pixels. To find which of them are visible, and to hand these to a loop that draws
-//! them, takes longer than to draw them, about 450 cycles on a Cortex-M0+: so nothing is handed on, and one loop tests a pixel's
-//! depth and draws it, at 170 cycles a row. From row to row depth and attributes go by one addition; what a bent triangle's
-//! attributes have to be bent by is a quadratic of column and row, evaluated at the first and the last pixel.
+//! A row of such a triangle has two or three pixels. To hand them on, first to a depth test and then to a loop that draws them,
+//! takes longer than to draw them. So both loops stand side by side here, once for each fill and depth format: one counts the pixels
+//! that are in front, the next draws them.
 //!
-//! What a pixel shows depends on its triangle alone, not on what hides it or where the band begins: rows are shaded whole.
+//! All that belongs to a row is a product with its number: nothing is carried from row to row.
 
 use super::cover::Cover;
-use super::fill::FillRow;
-use super::row::Row;
+use super::fill::{Fill, FillRow};
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::raster::{Rows, STRAIGHT, TriangleSetup};
-
-/// Whether a triangle is drawn at one go.
-#[inline]
-pub(crate) fn is_small(setup: &TriangleSetup, rows: &Rows) -> bool {
-    setup.is_small && setup.straight && rows.are_simple()
-}
+use crate::num::U1F31;
+use crate::raster::Rows;
+use core::hint::black_box;
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
     #[inline(never)]
-    pub(super) fn draw_small<const N: usize, L: FillRow<N, Word = F::Word>>(&mut self, fill: &L) {
+    pub(super) fn draw_small<const N: usize, L>(&mut self, fill: &L)
+    where
+        L: Fill<F::Word> + FillRow<N, Word = F::Word>,
+    {
         let Self { setup, rows, origin, width, pixels, depth, .. } = self;
-        let (setup, origin, width) = (*setup, *origin, *width);
-        // Where column 0 of the first row would be.
-        let mut row = origin.wrapping_add((rows.row() as usize).wrapping_mul(width));
-        let Some(attributes) = setup.attributes.first_chunk::<N>() else {
+        let (setup, width) = (*setup, *width);
+        let (Rows::Short(spans), Some(attributes)) = (&**rows, setup.attributes.first_chunk::<N>()) else {
             return;
         };
         // So that both are known to be as long.
@@ -39,53 +34,78 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
             return;
         };
         let depth = depth.get_mut(..length).unwrap_or_default();
-        // At corner 0's column, and from its row on.
-        let [x, y] = setup.corners[0].map(|at| at >> 4);
-        let mut near_w = setup.at(&setup.z, x, rows.row()).0;
-        let mut values: [u32; N] = core::array::from_fn(|i| setup.at(&attributes[i].plane, x, rows.row()).0);
-        let near_w_step = setup.z.steps[0];
-        // Hidden, so that the compiler keeps the minimum, and not what it is of.
-        let longest = core::hint::black_box(setup.longest.min(fill.longest_row()));
-        let is_bent = setup.longest < STRAIGHT;
-        let scales = [0, 1].map(|i| attributes.get(i).map_or(0, |attribute| attribute.scale_log2));
-        let scale_log2 = scales[0] | scales[1] << 8;
-        row = row.wrapping_add(x as usize);
-        rows.each_simple([x, y], |n, mut m, end| {
-            while m < end {
-                let steps = (end - m - 1).min(longest);
-                let (mut at, mut step) = ([0; N], [0; N]);
-                for (i, attribute) in attributes.iter().enumerate() {
-                    let (mut value, mut right) = (values[i], attribute.plane.steps[0]);
-                    if is_bent {
-                        let [xx, xy, yy] = attribute.bend;
-                        let down = yy.wrapping_mul(n).wrapping_mul(n);
-                        right = right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(m));
-                        value = value.wrapping_add_signed(down.wrapping_add(right.wrapping_mul(m)));
-                        right = right.wrapping_add(xx.wrapping_mul(m + steps));
-                    } else {
-                        value = value.wrapping_add_signed(right.wrapping_mul(m));
-                    }
-                    (at[i], step[i]) = attribute.along((value, right), steps);
-                }
-                let (first, count) = (row.wrapping_add(m as usize), steps as usize + 1);
+        let origin =
+            origin.wrapping_add((spans.row as usize).wrapping_mul(width)).wrapping_add(spans.column as usize);
+        let longest = if setup.is_bent { setup.longest as usize + 1 } else { usize::MAX };
+        for n in spans.rows().rev() {
+            let [mut start, end] = spans.span(n).map(usize::from);
+            // One run of visible pixels after another; mostly it is all of the row.
+            while start < end {
+                let mut count = if L::BENDS { (end - start).min(longest) } else { end - start };
+                let first = origin.wrapping_add(n * width).wrapping_add(start);
                 // In two steps: the end of a range is checked more dearly.
-                let part = |all| <[_]>::get_mut(all, first..).and_then(|rest| rest.get_mut(..count));
-                let depth = if D::ALWAYS_PASSES {
-                    Some(&mut [][..])
-                } else {
-                    depth.get_mut(first..).and_then(|rest| rest.get_mut(..count))
+                let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+                    return;
                 };
-                if let (Some(pixels), Some(depth)) = (part(&mut *pixels), depth) {
-                    let near_w = near_w.wrapping_add_signed(m.wrapping_mul(near_w_step));
-                    fill.row(Row::<F::Word, D> { pixels, depth, near_w, near_w_step, scale_log2 }, at, step);
+                let (x, y) = (spans.column + start as i32, spans.row + n as i32);
+                start += count;
+                if !D::ALWAYS_PASSES {
+                    let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+                        return;
+                    };
+                    let z = (setup.z.at(x, y), setup.z.steps[0]);
+                    let left = tested::<D>(depth, z);
+                    if left > 0 {
+                        count -= left;
+                        start -= left - hidden::<D>(depth, z, count);
+                        if count == 0 {
+                            continue;
+                        }
+                        pixels = pixels.get_mut(..count).unwrap_or_default();
+                    }
                 }
-                m += steps + 1;
+                let mut at = attributes.each_ref().map(|attribute| attribute.plane.at(x, y) as i32);
+                let mut step = attributes.each_ref().map(|attribute| attribute.plane.steps[0]);
+                if L::BENDS && setup.is_bent {
+                    let [u, v] = setup.along_bent([x, y], count as i32 - 1);
+                    [at[0], at[1], step[0], step[1]] = [u.0, v.0, u.1, v.1];
+                }
+                fill.row(pixels, at, step);
             }
-            row = row.wrapping_add(width);
-            near_w = near_w.wrapping_add_signed(setup.z.steps[1]);
-            for (value, attribute) in values.iter_mut().zip(attributes) {
-                *value = value.wrapping_add_signed(attribute.plane.steps[1]);
-            }
-        });
+        }
+    }
+}
+
+/// How many pixels are hidden side by side, from one on.
+#[cold]
+#[inline(never)]
+fn hidden<D: DepthFormat>(depth: &[D::Word], (near_w, step): (u32, i32), first: usize) -> usize {
+    let mut near_w = near_w.wrapping_add_signed(step.wrapping_mul(first as i32));
+    let depth = depth.get(first..).unwrap_or_default();
+    depth
+        .iter()
+        .take_while(|stored| {
+            let is_hidden = !D::test(stored, U1F31::from_bits(near_w));
+            near_w = near_w.wrapping_add_signed(step);
+            is_hidden
+        })
+        .count()
+}
+
+/// Tests depths up to the first pixel that is hidden, and stores those before it. How many there are from that one on.
+#[inline(always)]
+fn tested<D: DepthFormat>(depth: &mut [D::Word], (mut near_w, step): (u32, i32)) -> usize {
+    let mut depth = depth.iter_mut();
+    loop {
+        let left = depth.len();
+        let Some(stored) = depth.next() else {
+            return 0;
+        };
+        if !D::test_and_store_small(stored, U1F31::from_bits(near_w)) {
+            return left;
+        }
+        near_w = near_w.wrapping_add_signed(step);
+        // Not unrolled, which does not pay for a few pixels.
+        black_box(());
     }
 }

@@ -77,7 +77,9 @@ impl<'a> Perspective<'a> {
     pub(crate) fn new(setup: &'a TriangleSetup, units: Units) -> Self {
         let mut line =
             Self { setup, units, way: Self::bent, ups: [0; ATTRIBUTES], zeros: 1, curve: Curve::default() };
-        if setup.straight {
+        if setup.is_small {
+            line.way = Self::small;
+        } else if setup.straight {
             line.way = Self::straight;
         } else if setup.is_level {
             line.way = Self::level;
@@ -153,7 +155,7 @@ impl<'a> Perspective<'a> {
         let mut count = pixels.len().div_ceil(2);
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
-            let near_is_right = !self.setup.straight && self.setup.q_rises;
+            let near_is_right = !self.setup.is_small && !self.setup.straight && self.setup.q_rises;
             let way = loop {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
                 match (self.way)(self, x + skipped as i32, y, count as u32 - 1) {
@@ -251,6 +253,20 @@ impl<'a> Perspective<'a> {
             }
         }
         Way::Table
+    }
+
+    /// Of a small triangle.
+    #[inline(never)]
+    fn small(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        let (setup, steps) = (self.setup, steps as i32);
+        if (setup.is_held || setup.is_bent) && steps > setup.longest {
+            return Way::None;
+        }
+        for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count) {
+            let (at, slope) = setup.along(i, [x, y], steps);
+            *line = Linear { at: at as u32, slope };
+        }
+        Way::Straight
     }
 
     #[inline(never)]

@@ -119,13 +119,6 @@ pub trait Shader<F: PixelFormat> {
         None
     }
 
-    /// Whether what it [paints](Shader::paint) has a loop for small triangles: it has unless it fills
-    /// [rows](Pixels::shade_rows). Attributes may be bent in such a loop only.
-    #[doc(hidden)]
-    fn has_small(&self) -> bool {
-        true
-    }
-
     /// Fills some pixels of a triangle. The default calls [`Shader::color`] for each; a shader that chooses between several
     /// ways to colour a pixel may do so here, once for many.
     fn paint<P: Pixels<F::Word, Self::Quality>>(&self, pixels: P) {

@@ -85,7 +85,6 @@ impl<'a, F: PixelFormat, D: DepthFormat> Surface<'a, F, D> {
         let code = if reads_target { &LayerCode::READS_TARGET } else { &LayerCode::OPAQUE };
         let layers = Layers { code, ..Layers::OPAQUE };
         let traits = Traits::of(shader);
-        let traits = if S::REACH == Reach::Attributes { traits } else { traits.without_small() };
         Self {
             cull: shader.cull(),
             coloring: shader.coloring(),
@@ -119,7 +118,6 @@ where
         let opacity = K::opacity::<Q>().map(|Opacity(write)| write);
         let layers = Layers { code, opacity, layering: material.layering };
         let traits = Traits::of::<F, _>(&material.cast::<K, Q, Opaque>());
-        let traits = if code.draw.is_some() { traits.without_small() } else { traits };
         let traits = if opacity.is_some() { traits.with_gray() } else { traits };
         Self {
             cull: material.cull,
@@ -168,9 +166,7 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
     /// What set-up has to do, before a camera that may be orthographic, with colours that may all be grey, in fog or not.
     pub(crate) fn needs(&self, [is_orthographic, is_gray]: [bool; 2], is_foggy: bool) -> Needs {
         let depth = !D::ALWAYS_PASSES || is_foggy || self.needs_near_w;
-        let mut needs = self.traits.needs(depth, is_orthographic, is_gray);
-        needs.small &= !is_foggy;
-        needs
+        self.traits.needs::<F>(depth, is_orthographic, is_gray)
     }
 
     /// Draws a triangle that is set up.

@@ -8,13 +8,12 @@
 //! The [loops](super::loops) are chosen here: for [`Rgb565`](embedded_graphics::pixelcolor::Rgb565) those that are compiled with this crate.
 
 use super::curve::Curve;
-use super::fill::{Fill, FillRow, plus};
+use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
-use super::packed::{downs, integer_bits, longest_row_of, packed_from, packed_step, shifted};
-use super::row::Row;
+use super::packed::{downs, draw_texels, integer_bits};
 use super::units::Units;
-use crate::frame::{DepthFormat, PixelFormat};
+use crate::frame::PixelFormat;
 use crate::scene::Texture;
 use core::marker::PhantomData;
 
@@ -84,25 +83,9 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
 impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
     type Word = F::Word;
-
     #[inline]
-    fn longest_row(&self) -> i32 {
-        longest_row_of(self.texture, self.is_packed)
-    }
-
-    #[inline]
-    fn row<D: DepthFormat>(&self, row: Row<'_, F::Word, D>, [u, v]: [i32; 2], [u_step, v_step]: [i32; 2]) {
-        if !self.is_packed {
-            let up = |[u, v]: [i32; 2]| [u << row.scale_log2(0), v << row.scale_log2(1)];
-            let (at, step) = (up([u, v]), up([u_step, v_step]));
-            let word = |[u, v]: [i32; 2]| F::rgb565(self.texture.fetch_repeat(u >> 16, v >> 16));
-            return row.draw(at, |at| plus(at, step), word);
-        }
-        let [a, b] = self.texture.log2();
-        let [a, b] = [a.wrapping_sub(row.scale_log2(0)) & 31, b.wrapping_sub(row.scale_log2(1)) & 31];
-        let step = packed_step([shifted(u_step, a), shifted(v_step, b)]);
-        let first = packed_from([u >> a, v >> b], u_step);
-        row.draw_texels(self.texture, [first, step], (), |()| (), |texel, ()| F::rgb565(texel));
+    fn row(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
+        draw_texels(self.texture, self.is_packed, pixels, (at, ()), (step, ()), |texel, ()| F::rgb565(texel));
     }
 }
 

@@ -16,7 +16,6 @@ pub(crate) struct Traits {
     pub(crate) inputs: Inputs,
     straight: Straight,
     every_pixel: bool,
-    has_small: bool,
     /// Whether only the first channel of colours is read.
     is_gray: bool,
     scale_log2: u8,
@@ -29,16 +28,10 @@ impl Traits {
             inputs: shader.inputs(),
             straight: S::Quality::STRAIGHT,
             every_pixel: S::Quality::EVERY_PIXEL,
-            has_small: shader.has_small(),
             is_gray: false,
             scale_log2: shader.texture_scale().min(8) as u8,
             packed_log2: shader.packed_log2().map(|log2| log2.map(|log2| log2 as u8)),
         }
-    }
-
-    /// The same, drawn row by row however small triangles are.
-    pub(crate) fn without_small(self) -> Self {
-        Self { has_small: false, ..self }
     }
 
     /// The same with only the first channel of colours read.
@@ -49,18 +42,23 @@ impl Traits {
     /// What set-up has to do, with depth or without, before a camera that may be orthographic, and with colours that
     /// may all be grey.
     #[inline(never)]
-    pub(crate) fn needs(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
-        let scale_log2 = self.scale_log2.into();
-        let packing = Packing::new(self.packed_log2.map(|log2| log2.map(u32::from)), scale_log2, self.inputs);
+    pub(crate) fn needs<F: PixelFormat>(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
+        let scale = self.scale_log2.into();
+        let packed_log2 = self.packed_log2.map(|log2| log2.map(u32::from));
+        let packing = Packing::new(packed_log2, scale, self.inputs);
+        let of_small = Packing::new(packed_log2, 0, self.inputs);
         Needs {
             inputs: self.inputs,
             straight: if is_orthographic { Straight::Always } else { self.straight },
             every_pixel: self.every_pixel,
+            scale,
             finer: [0; 2],
             // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
-            scale_log2: [scale_log2, core::hint::black_box(scale_log2)],
+            scale_log2: [scale, core::hint::black_box(scale)],
             packings: [packing; 2],
-            small: self.has_small,
+            margins: of_small.margins(),
+            packing: of_small,
+            color_step: F::COLOR_STEP.into(),
             depth,
             gray: is_gray || self.is_gray,
         }

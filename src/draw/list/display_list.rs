@@ -240,7 +240,7 @@ fn render<F: PixelFormat, D: DepthFormat>(
             continue;
         }
         view.corners(triangle, draw.look.traits.inputs, draw.vertices, &mut corners);
-        raster.draw_in_order(corners.each_ref());
+        raster.draw_clockwise(corners.each_ref());
     }
 }
 

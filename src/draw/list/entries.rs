@@ -47,7 +47,7 @@ pub(crate) const MOST_SLOTS: usize = u16::MAX as usize;
 /// A triangle in a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ListTriangle {
-    /// The slots of the corners, clockwise on the screen, the nearest first.
+    /// The slots of the corners, clockwise on the screen.
     pub(crate) corners: [u16; 3],
     /// The first and the last row that it touches, in units of 4 rows (see [`ROWS_LOG2`]).
     pub(crate) rows: [u8; 2],

@@ -13,7 +13,7 @@ use super::compact::move_together;
 use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOTS, ROWS_LOG2};
 use super::style::Style;
 use crate::frame::Window;
-use crate::geometry::{Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, area, dim, in_order};
+use crate::geometry::{Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, area, clockwise, dim};
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
 use crate::raster::rows_of_folded;
@@ -183,12 +183,10 @@ impl Recorder<'_, '_> {
         Some([(top >> ROWS_LOG2) as u8, ((bottom - 1) >> ROWS_LOG2) as u8])
     }
 
-    /// Records a triangle, from the slots and q of its corners. They are put in the order in which set-up takes them, once
-    /// for all bands.
+    /// Records a triangle, from the slots of its corners.
     #[inline(always)]
-    fn add(&mut self, corners: [(u16, U1F31); 3], area: i32, rows: [u8; 2]) {
-        let corners = in_order(corners, area, |(_, q)| q.to_bits()).map(|(slot, _)| slot);
-        self.push_triangle(ListTriangle { corners, rows });
+    fn add(&mut self, corners: [u16; 3], area: i32, rows: [u8; 2]) {
+        self.push_triangle(ListTriangle { corners: clockwise(corners, area), rows });
     }
 
     #[inline(always)]
@@ -212,20 +210,19 @@ impl Recorder<'_, '_> {
         Ok(())
     }
 
-    /// Keeps a vertex of the mesh; returns the slot that it will have at the end, and q. When it is kept for the first time
+    /// Keeps a vertex of the mesh; returns the slot that it will have at the end. When it is kept for the first time
     /// it gets its colour, and this final slot is stored in `attributes[3]` until [`move_together`].
     #[inline]
-    fn keep(&mut self, index: u16) -> (u16, U1F31) {
+    fn keep(&mut self, index: u16) -> u16 {
         let slot = usize::from(index).wrapping_add(self.to_slot);
         let Some(vertex) = self.vertices.get_mut(slot) else {
-            return (0, U1F31::ZERO);
+            return 0;
         };
-        let q = vertex.q;
-        if q & KEPT != U1F31::ZERO {
-            return (vertex.attributes[3], q & !KEPT);
+        if vertex.q & KEPT != U1F31::ZERO {
+            return vertex.attributes[3];
         }
         let next = self.next;
-        (vertex.q, self.next) = (q | KEPT, next + 1);
+        (vertex.q, self.next) = (vertex.q | KEPT, next + 1);
         if self.style.has_color() {
             let mut color = [U8F8::ZERO; 3];
             self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
@@ -234,13 +231,13 @@ impl Recorder<'_, '_> {
         } else {
             vertex.attributes[3] = next;
         }
-        (next, q)
+        next
     }
 
     /// Records a triangle with flat shading. Its colours are its own, so its corners are too: they are appended.
     #[inline(never)]
     fn add_faceted(&mut self, indices: [u16; 3], area: i32, rows: [u8; 2]) {
-        let mut corners = [(0, U1F31::ZERO); 3];
+        let mut corners = [0; 3];
         let light = self.style.coloring.on_face(indices.map(|index| self.mesh.vertex(index)));
         for (corner, index) in corners.iter_mut().zip(indices) {
             let slot = usize::from(index).wrapping_add(self.to_slot);
@@ -254,7 +251,7 @@ impl Recorder<'_, '_> {
             if let Some(light) = light {
                 dim(&mut vertex.color, light);
             }
-            *corner = (self.push(&vertex), vertex.q);
+            *corner = self.push(&vertex);
         }
         self.add(corners, area, rows);
     }
@@ -298,8 +295,7 @@ impl Recorder<'_, '_> {
                 };
                 slots[i] = Some(*corner);
             }
-            let [a, b, c] = [0, 1, 2].map(|i| (corners[i], polygon[fan[i]].q));
-            self.add([a, b, c], area, rows);
+            self.add(corners, area, rows);
         }
     }
 

@@ -47,10 +47,10 @@ fn table() -> Vec<(u64, u64, [u64; 2])> {
 }
 
 #[test]
-fn bands_of_16_rows_take_at_most_16_percent_more_cycles_than_a_frame_drawn_at_once() {
+fn bands_of_16_rows_take_at_most_19_percent_more_cycles_than_a_frame_drawn_at_once() {
     let cycles = |rows: u64| table().iter().find(|row| row.0 == rows).expect("the table has the height").2;
     for (bands, whole) in cycles(16).iter().zip(cycles(0)) {
-        assert!(bands * 100 <= whole * 116, "{bands} cycles, and {whole} at once");
+        assert!(bands * 100 <= whole * 119, "{bands} cycles, and {whole} at once");
     }
 }
 

@@ -1,0 +1,218 @@
+//! Held triangles: small ones whose attributes are limited to the range of the corners at the ends of each row.
+//!
+//! - In: a small triangle that is not [plain](super::small), and its gradients.
+//! - Out: its planes, what they are bent by, and the ranges; along a row, attributes within these.
+//! - Assumes: what [`small`](super::small) has asked of it.
+
+use super::attribute::Attribute;
+use super::plane::Plane;
+use super::small::Gradients;
+use super::straight::{Bend, Straight};
+use super::triangle::{Needs, STRAIGHT, TriangleSetup};
+use crate::geometry::{ScreenVertex, position};
+use crate::num::{mul_16, mul_16_signed};
+
+impl TriangleSetup {
+    /// Sets the attributes of a small triangle as linear on the screen, to be held: from the gradients, and q at the corners. False if the
+    /// general way has to.
+    #[inline(never)]
+    pub(super) fn set_held(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        needs: &Needs,
+        gradients: &Gradients,
+        q: [u32; 3],
+    ) -> bool {
+        let (most, least) = (q[0].max(q[1]).max(q[2]), q[0].min(q[1]).min(q[2]));
+        let is_level = needs.is_exactly_straight(least, most);
+        if let Straight::Below(limit) = needs.straight
+            && !is_level
+            && !Bend::new(&gradients.edges, q).is_some_and(|bend| bend.is_straight(limit))
+        {
+            return false;
+        }
+        self.hold(vertices);
+        self.is_held = true;
+        if needs.reads_color() {
+            self.set_gray(vertices, needs);
+        }
+        let (needs, attributes) = (needs.scaled(), &mut self.attributes);
+        let are_set = needs.each_attribute(vertices, self.gray, |i, at, _| {
+            let Some(attribute) = attributes.get_mut(i) else {
+                return false;
+            };
+            let rise = attribute.set_range(at, 0);
+            if attribute.range >= 1 << 27 {
+                return false;
+            }
+            let origin = attribute.origin();
+            gradients.set_plane(&mut attribute.plane, origin, &rise.map(|rise| rise >> 8));
+            attribute.bend = [0; 3];
+            true
+        });
+        if are_set && needs.reads_uv() {
+            if is_level {
+                self.lean(vertices, &needs, 2, i32::MAX);
+            } else {
+                self.keep_small_inside(&needs);
+            }
+        }
+        // Held planes begin at corner 0's pixel.
+        let [x, y] = gradients.pixel;
+        for Attribute { plane, .. } in &mut self.attributes {
+            plane.origin = plane.at(x, y);
+        }
+        are_set
+    }
+
+    /// Begins a triangle whose rows are held.
+    fn hold(&mut self, vertices: &[&ScreenVertex; 3]) {
+        self.longest = STRAIGHT;
+        self.corners = vertices.map(position);
+    }
+
+    /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
+    /// enough, or if one differs by 2²⁶ or more: V takes up to a quarter of that besides.
+    #[inline(never)]
+    pub(super) fn bend(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        needs: &Needs,
+        gradients: &Gradients,
+        q: [u32; 3],
+        limit: u32,
+    ) -> bool {
+        let Some(bend) = Bend::new(&gradients.edges, q) else {
+            return false;
+        };
+        let at = |i: usize| {
+            vertices.map(|vertex| (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (needs.scale & 31))
+        };
+        let is_straight =
+            |[a, b, c]: [i32; 3]| bend.is_straight_for(limit, [b.wrapping_sub(a), c.wrapping_sub(a)]);
+        if is_straight(at(0)) && is_straight(at(1)) {
+            return true;
+        }
+        // ∇q/q_mid per column and row, 16 fraction bits.
+        let Some(slopes_of_q) = bend.slopes(self.z.steps) else {
+            return false;
+        };
+        self.hold(vertices);
+        self.is_bent = true;
+        // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
+        // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
+        while (self.longest * self.longest) * slopes_of_q[0].abs() > 3 << 13 {
+            self.longest >>= 1;
+        }
+        for i in 0..2 {
+            if !bend_attribute(&mut self.attributes[i], at(i), gradients, &bend, slopes_of_q) {
+                return false;
+            }
+        }
+        self.keep_small_inside(needs);
+        true
+    }
+
+    /// Limits u and v of a small triangle that does not lean: u below its greatest value, v to its inset. Where u repeats within four
+    /// pixels planes are evaluated at every pixel. `needs` have all of the scale before planes are made.
+    #[inline(never)]
+    fn keep_small_inside(&mut self, needs: &Needs) {
+        if needs.packing.is_steep(self.attributes[0].plane.steps[0]) {
+            self.longest = 0;
+        }
+        let [u, v, ..] = &mut self.attributes;
+        u.open_end();
+        v.keep_straight_inside(needs.packing.inset.into());
+    }
+
+    /// An attribute at a pixel of a small triangle, I16F16, and its step along a row of at most `longest` steps. One that is held does
+    /// not leave its range.
+    #[inline]
+    pub(crate) fn along(&self, i: usize, place: [i32; 2], steps: i32) -> (i32, i32) {
+        let Some(attribute) = self.attributes.get(i) else {
+            return (0, 0);
+        };
+        if self.is_held || self.is_bent && i < 2 {
+            return along_one(attribute, self.beyond_corner(place), steps);
+        }
+        let [x, y] = place;
+        (attribute.plane.at(x, y) as i32, attribute.plane.steps[0])
+    }
+
+    /// u and v of a bent triangle, as [`TriangleSetup::along`].
+    #[inline(never)]
+    pub(crate) fn along_bent(&self, place: [i32; 2], steps: i32) -> [(i32, i32); 2] {
+        let [u, v, ..] = &self.attributes;
+        let place = self.beyond_corner(place);
+        [along_held(u, place, steps), along_held(v, place, steps)]
+    }
+
+    /// From corner 0's pixel to a pixel.
+    #[inline]
+    fn beyond_corner(&self, [x, y]: [i32; 2]) -> [i32; 2] {
+        let [corner_x, corner_y] = self.corners[0];
+        [x - (corner_x >> 4), y - (corner_y >> 4)]
+    }
+}
+
+/// A held attribute m columns right and n rows below corner 0's pixel, I16F16, and its step along a row of at most `longest` steps, in
+/// neither of which it leaves the range.
+#[inline(always)]
+fn along_held(attribute: &Attribute, [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
+    let ([xx, xy, yy], Plane { origin, steps: [right, down] }) = (attribute.bend, attribute.plane);
+    let right = right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(m));
+    let down = down.wrapping_add(yy.wrapping_mul(n));
+    let value = origin.wrapping_add_signed(right.wrapping_mul(m)).wrapping_add_signed(down.wrapping_mul(n));
+    attribute.along((value, right.wrapping_add(xx.wrapping_mul(m + steps))), steps)
+}
+
+/// Likewise: for where it is not asked as often.
+#[inline(never)]
+fn along_one(attribute: &Attribute, place: [i32; 2], steps: i32) -> (i32, i32) {
+    along_held(attribute, place, steps)
+}
+
+/// Bends a texture coordinate whose plane is linear, from its values at the corners.
+#[inline(never)]
+fn bend_attribute(
+    attribute: &mut Attribute,
+    at: [i32; 3],
+    gradients: &Gradients,
+    bend: &Bend,
+    [q_right, q_down]: [i32; 2],
+) -> bool {
+    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
+    let rise = attribute.set_range(at, 0);
+    if attribute.range >= 1 << 26 {
+        return false;
+    }
+    // ∇u.
+    let [right, down] = attribute.plane.steps;
+    // The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at least
+    // 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
+    let xx = -mul_16_signed(right, q_right);
+    let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
+    let yy = -mul_16_signed(down, q_down);
+    // V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid).
+    let origin = attribute.origin();
+    let rises = [0, 1].map(|i| {
+        let (rise, rise_of_q) = (rise[i], bend.rise(i));
+        let change = mul_16(rise, rise_of_q.unsigned_abs());
+        (if rise_of_q < 0 { rise - change } else { rise + change }) >> 8
+    });
+    gradients.set_plane(&mut attribute.plane, origin, &rises);
+    // The quadratic is evaluated by offsets (m, n) from the centre of corner 0's pixel, while p counts from corner 0:
+    // it is (m + x/16, n + y/16). What is linear in m and n of that goes into the steps, and what is constant into
+    // the origin. With x and y at most 8, sums are below 2³¹.
+    let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
+    // And the plane begins at that pixel.
+    attribute.plane.origin = attribute
+        .plane
+        .at(pixel_x, pixel_y)
+        .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3);
+    for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
+        *step = step.wrapping_add(more);
+    }
+    attribute.bend = [xx, xy, yy];
+    true
+}

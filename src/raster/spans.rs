@@ -1,0 +1,226 @@
+//! Spans: which pixels of each row a small triangle covers, exactly, as a table of bytes.
+//!
+//! - In: the edges of a triangle that is at most 32 pixels wide and less high, and a window.
+//! - Out: for each row the first column that it covers and the end (exclusive); [`rows`](super::rows) has the rule.
+//! - Assumes: the corners run clockwise, from the uppermost on.
+//!
+//! Rows and columns count from a pixel so far up and left that all numbers are positive. Each edge is walked once, from its
+//! upper end down, and writes its side of the rows that it bounds:
+//!
+//! ```text
+//!            top                 table
+//!             ·            0    10  10     empty: no centre lies between the edges
+//!            ╱ ╲           1     9  11
+//!   left    ╱   ╲  right   2     8  12
+//!          ·     ╲         3     9  12     from here on the lower edge
+//!            ─────·        4    11  12
+//! ```
+//!
+//! The number of centres left of an edge has 20 fraction bits, and one addition takes it to the next row. That is exact: see
+//! [`side`].
+
+use crate::frame::{Window, first_center};
+use crate::geometry::ScreenVertex;
+use crate::math::recip::quotient_of_10_bits;
+
+/// The most rows of a small triangle, and its most columns.
+pub(crate) const WIDEST: usize = 32;
+const ROWS: usize = WIDEST;
+/// The fraction bits of columns along an edge.
+const FRACTION: u32 = 20;
+
+/// A small triangle on the screen: where its uppermost corner is, and from there the other two, clockwise. All in 1/16 px.
+pub(crate) struct SmallEdges {
+    pub(super) top: [i32; 2],
+    /// x within ±512, y 0 … 511; and so is what these two differ by.
+    pub(super) next: [i32; 2],
+    pub(super) last: [i32; 2],
+}
+
+impl SmallEdges {
+    /// Of corners that run clockwise from the uppermost on; `None` if the triangle is more than 32 pixels wide, or 32 or more
+    /// high.
+    #[inline(always)]
+    pub(crate) fn of([a, b, c]: [&ScreenVertex; 3]) -> Option<Self> {
+        let at = |vertex: &ScreenVertex| [i32::from(vertex.x.to_bits()), i32::from(vertex.y.to_bits())];
+        let (top @ [x, y], [bx, by], [cx, cy]) = (at(a), at(b), at(c));
+        let (next, last) = ([bx - x, by - y], [cx - x, cy - y]);
+        // A difference of −512 … 511 becomes 0 … 1023: no bit from 2¹⁰ on is set.
+        let biased = |dx: i32| dx + (1 << 9);
+        let wide = biased(next[0]) | biased(last[0]) | biased(last[0] - next[0]);
+        ((wide >> 1 | next[1] | last[1]) as u32 >> 9 == 0).then_some(Self { top, next, last })
+    }
+}
+
+/// The rows of a small triangle in a window. One serves all small triangles of a draw, one after another.
+#[derive(Clone, Debug)]
+pub(crate) struct Spans {
+    /// Of each row the first column and the end (exclusive), which may be less.
+    table: [[u8; 2]; ROWS],
+    /// The screen's row and column from which the table counts. The column may be left of the screen.
+    pub(crate) row: i32,
+    pub(crate) column: i32,
+    /// The rows of the table that lie in the window.
+    start: u8,
+    end: u8,
+}
+
+impl Spans {
+    pub(crate) const NONE: Self = Self { table: [[0; 2]; ROWS], row: 0, column: 0, start: 0, end: 0 };
+
+    /// Starts a triangle. False if it has no pixels in the window. (True does not mean that it has.)
+    #[inline(always)]
+    pub(crate) fn start(&mut self, edges: &SmallEdges, window: &Window) -> bool {
+        let SmallEdges { top: [ax, ay], next: [bx, by], last: [cx, cy] } = *edges;
+        self.row = first_center(ay);
+        // From the row's centre up to the corner.
+        let above = self.row * 16 + 8 - ay;
+        let rows_to = |y: i32| (y - above + 15) >> 4;
+        let (mut first, mut next, mut last) = (0, rows_to(by), rows_to(cy));
+        let (is_next_lower, is_last_lower) = (next > last, last > next);
+        let mut end = next.max(last);
+        let (top, bottom) = (window.rows.start - self.row, window.rows.end - self.row);
+        if (-top | (bottom - end)) < 0 {
+            first = top.max(0);
+            end = end.min(bottom).max(first);
+            (next, last) = (next.clamp(first, end), last.clamp(first, end));
+        }
+        (self.start, self.end) = (first as u8, end as u8);
+        if first >= end {
+            return false;
+        }
+        self.column = (ax >> 4) - ROWS as i32;
+        let x = (ax & 15) + (ROWS as i32 * 16 + 8);
+        let corners = [[x, -above, first], [x + bx, by - above, next], [x + cx, cy - above, last]];
+        side::<1>(&mut self.table, &corners[0], &corners[1]);
+        side::<0>(&mut self.table, &corners[0], &corners[2]);
+        if is_last_lower {
+            side::<1>(&mut self.table, &corners[1], &corners[2]);
+        } else if is_next_lower {
+            side::<0>(&mut self.table, &corners[2], &corners[1]);
+        }
+        // All columns lie within 32 pixels of the top.
+        if (self.column - window.columns.start) | (window.columns.end - self.column - 2 * ROWS as i32 - 1) < 0
+        {
+            return self.clip(window);
+        }
+        // One or two rows are empty as often as not, in a band. Of more it would take longer to ask than it saves.
+        let [left, right] = self.span(first as usize);
+        left < right
+            || end - first > 2
+            || end - first == 2 && {
+                let [left, right] = self.span(first as usize + 1);
+                left < right
+            }
+    }
+
+    /// Clips spans to the window's columns. False if none is left.
+    #[cold]
+    #[inline(never)]
+    fn clip(&mut self, window: &Window) -> bool {
+        let within = |column: i32| (column - self.column).clamp(0, 255) as u8;
+        let (left, right) = (within(window.columns.start), within(window.columns.end));
+        let mut any = false;
+        for [start, end] in
+            self.table.get_mut(usize::from(self.start)..usize::from(self.end)).unwrap_or_default()
+        {
+            (*start, *end) = ((*start).max(left), (*end).min(right));
+            any |= *start < *end;
+            // Not unrolled.
+            core::hint::black_box(());
+        }
+        any
+    }
+
+    /// The rows of the table that lie in the window.
+    #[inline]
+    pub(crate) fn rows(&self) -> core::ops::Range<usize> {
+        usize::from(self.start)..usize::from(self.end)
+    }
+
+    /// The first column and the end of a row of the table.
+    #[inline]
+    pub(crate) fn span(&self, row: usize) -> [u8; 2] {
+        self.table[row & (ROWS - 1)]
+    }
+
+    /// A row of the table on the screen: the row, and its span's start and end (exclusive).
+    #[inline]
+    pub(crate) fn on_screen(&self, row: usize) -> [i32; 3] {
+        let [start, end] = self.span(row);
+        [self.row + row as i32, self.column + i32::from(start), self.column + i32::from(end)]
+    }
+
+    /// With one row only.
+    pub(crate) fn only(&self, row: usize) -> Self {
+        Self { start: row as u8, end: row as u8 + 1, ..self.clone() }
+    }
+
+    /// The next row, and its span's start and end (exclusive), on the screen. The span may be empty.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> Option<(i32, i32, i32)> {
+        if self.start == self.end {
+            return None;
+        }
+        let [row, start, end] = self.on_screen(self.start.into());
+        self.start += 1;
+        Some((row, start, end))
+    }
+}
+
+/// Writes one side of the rows between two corners, the upper one first. Of each corner: its column plus ½, and its y from the
+/// first row's centre on, in 1/16 px; and the first row that lies at it or below.
+///
+/// Why 20 bits are enough: let X be the column of the edge plus ½. The number of centres left of the edge is ceil(X − 1). X
+/// is a multiple of 1/16dy, which is more than 2⁻¹³. So the number is floor(X − δ) with any δ above 0 and up to 2⁻¹³. δ =
+/// 2⁻¹⁴ is the middle: it may be wrong by up to 2⁻¹⁴ either way. The reciprocal's relative error of 2⁻²⁰ moves X by at most
+/// |dx|·2⁻²⁴ ≤ 2⁻¹⁵. The slope's rounding moves it by 2⁻²¹ in every row, by 2⁻¹⁶ in 32 rows. What is left, 2⁻¹⁶, is more than
+/// the last bits of the line with `below`.
+#[inline(never)]
+fn side<const SIDE: usize>(table: &mut [[u8; 2]; ROWS], from: &[i32; 3], to: &[i32; 3]) {
+    let Some(rows) = table.get_mut(from[2] as usize..to[2] as usize) else {
+        return;
+    };
+    if rows.is_empty() {
+        return;
+    }
+    let slope = quotient_of_10_bits(to[0] - from[0], to[1] - from[1]);
+    let below = from[2] * 16 - from[1];
+    let mut x = (from[0] << (FRACTION - 4)) + ((below * slope) >> 4) - ((1 << (FRACTION - 14)) + 1);
+    for row in rows {
+        row[SIDE] = (x >> FRACTION) as u8;
+        x += slope;
+        core::hint::black_box(());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_of_all_sizes_count_exactly_in_every_row() {
+        let mut seed = 1_u32;
+        for dy in 1..1 << 9 {
+            for dx in -512..=512 {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                // Within a pixel of the middle of the table, and at most a row above its first centre.
+                let [x, y] = [512 + 8 + (seed >> 16 & 15) as i32, -((seed >> 4) as i32 & 15)];
+                let end = (y + dy + 15) >> 4;
+                // A window may begin at any row: half of the edges start in the middle.
+                let first = (seed >> 10 & 1) as i32 * (end / 2);
+                if first >= end {
+                    continue;
+                }
+                let mut table = [[0; 2]; ROWS];
+                side::<1>(&mut table, &[x, y, first], &[x + dx, y + dy, end]);
+                for row in first..end {
+                    // The column plus ½ in 1/16 px is (x·dy + (16·row − y)·dx)/dy; of that less 1, rounded up.
+                    let exactly = x * dy + (row * 16 - y) * dx - 16 * dy + 16 * dy - 1;
+                    let exactly = exactly.div_euclid(16 * dy);
+                    assert_eq!(i32::from(table[row as usize][1]), exactly, "{dx} × {dy}, row {row}");
+                }
+            }
+        }
+    }
+}
