@@ -4,8 +4,8 @@
 //! - Out: the planes of its depth and attributes; or `false` if it has to be set up by the general way.
 //! - Assumes: the corners lie in the guard band.
 //!
-//! The general way takes a triangle nevertheless if it is too thin, if q varies too much, or if its attributes have to be
-//! divided by q at its pixels.
+//! The general way takes a triangle nevertheless if it is too thin, if q varies too much, if its attributes have to be divided by q at
+//! its pixels, or if a colour would be off by more than what shows ([`Needs::color_step`]).
 //!
 //! # One gradient for all
 //!
@@ -35,7 +35,7 @@
 //!
 //! # Bent triangles
 //!
-//! A triangle that is not straight may be *bent*: its attributes are quadratics on the screen, and again no pixel divides.
+//! A triangle that is not straight may be *bent*: its texture coordinates are quadratics on the screen, and again no pixel divides.
 //! [`straight`](super::straight) has the difference of exact and linear u: the covariance of u and q, divided by q. The
 //! covariance is a quadratic that is 0 at the corners. With a constant in the place of the divisor, q_mid = (q_min +
 //! q_max)/2, the whole is one, too:
@@ -51,7 +51,7 @@
 //! fall/2 is wrong: length·fall²/8 pixels, of which 3/32 are allowed. A row is drawn as straight lines between points
 //! of the quadratic, which may be off by 3/32 again. Rounding has the rest of the quarter pixel.
 //!
-//! Colours bend later: they may be off by a step of what the target's finest channel shows, too ([`Needs::color_step`]).
+//! Colours are linear all the same: they may be off by a step of the target's finest channel.
 
 use super::packing::PACKED_MARGIN;
 use super::plane::Plane;
