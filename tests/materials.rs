@@ -200,6 +200,32 @@ fn a_small_triangle_with_a_large_texture_is_within_the_bound() {
         .expect("it is within the bound");
 }
 
+/// Packed, each repeat of u along a row moves v by its last bit, 1/256 texel of 256. Here u repeats up to seven times in a row of 32
+/// pixels, and v is a whole number at each corner: so it is close to a texel that it must not show.
+#[test]
+fn rows_in_which_u_repeats_often_keep_v_in_its_range_3_000_cases() {
+    let chart: &'static Chart = Box::leak(Box::new(Chart::new((8, 8))));
+    let position = || (0..512_i32, 0..512_i32);
+    let q = || 600_000_000..660_000_000_u32;
+    let corner = || (position(), q(), 0..4_i32);
+    let cases = ((corner(), corner(), corner()), -60..=60_i32, -60..=60_i32, any::<bool>());
+    let telling = Cell::new(0_u32);
+    for_all("u repeats in rows", 3000, cases, |((a, b, c), right, down, is_level)| {
+        let corner = |((x, y), q, v): ((i32, i32), u32, i32)| {
+            // In units of 2⁻¹⁶, of texels a pixel and 1/16 px.
+            let u = (right * x + down * y) << 12;
+            let q = if is_level { 610_000_000 } else { q };
+            Corner { x, y, q, attributes: [u, v << 16, 0, 0, 0] }
+        };
+        let triangle = Triangle([corner(a), corner(b), corner(c)]);
+        let (texture, log2) = chart.textures()[1];
+        let at = (1, log2, Beyond::Repeated, 0.25);
+        let tells = |low: f64, high: f64| telling.set(telling.get() + u32::from(high - low < 2.0));
+        fetches_within(Strip::new(32, 32, 0), &triangle, &Material::textured(&texture), at, tells)
+    });
+    assert!(telling.get() > 10 * common::cases(3000));
+}
+
 /// Level and slow: nothing but a step's bits makes an error.
 #[test]
 fn level_rows_of_textures_are_within_the_bound_600_cases() {

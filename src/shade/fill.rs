@@ -11,7 +11,7 @@
 use super::curve::{Curve, distance};
 use super::quality::Quality;
 use super::units::{Form, Units};
-use crate::raster::ATTRIBUTES;
+use crate::raster::{ATTRIBUTES, WIDEST};
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -40,7 +40,13 @@ pub trait FillRow<const N: usize> {
     /// Whether the first two attributes may be texture coordinates, which may be bent.
     const BENDS: bool = N > 1;
 
-    /// At most 32 pixels side by side, from attributes in I16F16 at the first of them and their steps.
+    /// The most pixels side by side for which [`FillRow::row`] is exact enough; asked of those that may be bent.
+    #[inline]
+    fn longest(&self) -> usize {
+        WIDEST
+    }
+
+    /// At most so many pixels side by side, from attributes in I16F16 at the first of them and their steps.
     fn row(&self, pixels: &mut [Self::Word], at: [i32; N], step: [i32; N]);
 }
 

@@ -8,7 +8,7 @@ use super::channels::{Channels, lit};
 use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::Light;
-use super::packed::draw_texels;
+use super::packed::{draw_texels, longest_of};
 use super::texels::Texels;
 use super::units::Units;
 use crate::frame::PixelFormat;
@@ -63,6 +63,11 @@ macro_rules! fill_row_of_lit_texels {
     ($n:literal, $m:literal) => {
         impl<F: PixelFormat, C: Channels<$m>> FillRow<$n> for LitTexels<'_, $m, F, C> {
             type Word = F::Word;
+
+            #[inline]
+            fn longest(&self) -> usize {
+                longest_of(self.texture, self.is_packed)
+            }
 
             #[inline]
             fn row(

@@ -2,7 +2,7 @@
 
 use super::curve::Linear;
 use super::fill::{Steps, draw_row};
-use crate::raster::ATTRIBUTES;
+use crate::raster::{ATTRIBUTES, WIDEST};
 use crate::scene::Texture;
 
 /// The texel at packed coordinates of a texture of so many.
@@ -55,6 +55,13 @@ pub(crate) fn turned(u_step: i32) -> i32 {
 #[inline]
 pub(crate) fn shifted(step: i32, log2: u32) -> i32 {
     (step + ((step >> 31) & ((1 << log2) - 1))) >> log2
+}
+
+/// `FillRow::longest` of texels. Packed, a step is cut to 8 bits for 256 texels: after 15 it is off by 1/17 texel, and carries have
+/// moved v as far as [`Packing`](crate::raster::Packing) has room for.
+#[inline]
+pub(crate) fn longest_of(texture: &Texture<'_>, is_packed: bool) -> usize {
+    if is_packed && texture.is_large() { 16 } else { WIDEST }
 }
 
 /// Draws a row of a small triangle with texels, u and v in I16F16. `other` is whatever else a word is made of, and steps as well.

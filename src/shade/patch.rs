@@ -14,7 +14,7 @@ use super::cover::Cover;
 use super::fill::{Fill, FillRow};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::U1F31;
-use crate::raster::Rows;
+use crate::raster::{Rows, WIDEST};
 use core::hint::black_box;
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
@@ -36,7 +36,8 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
         let depth = depth.get_mut(..length).unwrap_or_default();
         let origin =
             origin.wrapping_add((spans.row as usize).wrapping_mul(width)).wrapping_add(spans.column as usize);
-        let longest = if setup.is_bent { setup.longest as usize + 1 } else { usize::MAX };
+        let longest = if setup.is_bent { setup.longest as usize + 1 } else { WIDEST };
+        let longest = longest.min(fill.longest());
         for n in spans.rows().rev() {
             let [mut start, end] = spans.span(n).map(usize::from);
             // One run of visible pixels after another; mostly it is all of the row.

@@ -11,7 +11,7 @@ use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
-use super::packed::{downs, draw_texels, integer_bits};
+use super::packed::{downs, draw_texels, integer_bits, longest_of};
 use super::units::Units;
 use crate::frame::PixelFormat;
 use crate::scene::Texture;
@@ -83,6 +83,11 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
 impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
     type Word = F::Word;
+
+    #[inline]
+    fn longest(&self) -> usize {
+        longest_of(self.texture, self.is_packed)
+    }
     #[inline]
     fn row(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         draw_texels(self.texture, self.is_packed, pixels, (at, ()), (step, ()), |texel, ()| F::rgb565(texel));
