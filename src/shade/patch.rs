@@ -77,20 +77,22 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
     }
 }
 
-/// How many pixels are hidden side by side, from one on.
+/// How many pixels are hidden side by side, from one on that is known to be.
+///
+/// A format is asked once to test and store for each pixel of a triangle, as one that counts them expects.
 #[cold]
 #[inline(never)]
-fn hidden<D: DepthFormat>(depth: &[D::Word], (near_w, step): (u32, i32), first: usize) -> usize {
-    let mut near_w = near_w.wrapping_add_signed(step.wrapping_mul(first as i32));
-    let depth = depth.get(first..).unwrap_or_default();
-    depth
-        .iter()
-        .take_while(|stored| {
-            let is_hidden = !D::test(stored, U1F31::from_bits(near_w));
-            near_w = near_w.wrapping_add_signed(step);
-            is_hidden
-        })
-        .count()
+fn hidden<D: DepthFormat>(depth: &mut [D::Word], (near_w, step): (u32, i32), first: usize) -> usize {
+    let mut count = 1;
+    for (n, stored) in depth.iter_mut().enumerate().skip(first + 1) {
+        let near_w = U1F31::from_bits(near_w.wrapping_add_signed(step.wrapping_mul(n as i32)));
+        if D::test(stored, near_w) {
+            break;
+        }
+        D::test_and_store_small(stored, near_w);
+        count += 1;
+    }
+    count
 }
 
 /// Tests depths up to the first pixel that is hidden, and stores those before it. How many there are from that one on.
