@@ -85,9 +85,7 @@ impl TriangleSetup {
         let Some(bend) = Bend::new(&gradients.edges, q) else {
             return false;
         };
-        let at = |i: usize| {
-            vertices.map(|vertex| (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (needs.scale & 31))
-        };
+        let at = |i: usize| vertices.map(|vertex| needs.scaled_uv(vertex, i));
         let is_straight =
             |[a, b, c]: [i32; 3]| bend.is_straight_for(limit, [b.wrapping_sub(a), c.wrapping_sub(a)]);
         if is_straight(at(0)) && is_straight(at(1)) {

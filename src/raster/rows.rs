@@ -148,7 +148,7 @@ impl Rows {
 impl LongRows {
     /// As [`Rows::start_long`].
     #[inline(never)]
-    pub(crate) fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) -> bool {
+    fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) -> bool {
         if a[1] <= b[1] && a[1] <= c[1] {
             self.start_at(a, b, c, window);
         } else if b[1] <= c[1] {

@@ -216,10 +216,7 @@ impl TriangleSetup {
     #[inline(never)]
     fn set_uv(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs, gradients: &Gradients) -> bool {
         for i in 0..2 {
-            let [a, b, c] = vertices.map(|vertex| {
-                let at = if i == 0 { vertex.u } else { vertex.v };
-                at.to_bits() << (needs.scale & 31) & !0xff
-            });
+            let [a, b, c] = vertices.map(|vertex| needs.scaled_uv(vertex, i) & !0xff);
             let rises = [b, c].map(|other| other.wrapping_sub(a) >> 8);
             let attribute = &mut self.attributes[i];
             let [least, range] =

@@ -25,7 +25,6 @@ use crate::math::recip::quotient_of_10_bits;
 
 /// The most rows of a small triangle, and its most columns.
 pub(crate) const WIDEST: usize = 32;
-const ROWS: usize = WIDEST;
 /// The fraction bits of columns along an edge.
 const FRACTION: u32 = 20;
 
@@ -56,7 +55,7 @@ impl SmallEdges {
 #[derive(Clone, Debug)]
 pub(crate) struct Spans {
     /// Of each row the first column and the end (exclusive), which may be less.
-    table: [[u8; 2]; ROWS],
+    table: [[u8; 2]; WIDEST],
     /// The screen's row and column from which the table counts. The column may be left of the screen.
     pub(crate) row: i32,
     pub(crate) column: i32,
@@ -66,7 +65,7 @@ pub(crate) struct Spans {
 }
 
 impl Spans {
-    pub(crate) const NONE: Self = Self { table: [[0; 2]; ROWS], row: 0, column: 0, start: 0, end: 0 };
+    pub(crate) const NONE: Self = Self { table: [[0; 2]; WIDEST], row: 0, column: 0, start: 0, end: 0 };
 
     /// Starts a triangle. False if it has no pixels in the window. (True does not mean that it has.)
     #[inline(always)]
@@ -89,8 +88,8 @@ impl Spans {
         if first >= end {
             return false;
         }
-        self.column = (ax >> 4) - ROWS as i32;
-        let x = (ax & 15) + (ROWS as i32 * 16 + 8);
+        self.column = (ax >> 4) - WIDEST as i32;
+        let x = (ax & 15) + (WIDEST as i32 * 16 + 8);
         let corners = [[x, -above, first], [x + bx, by - above, next], [x + cx, cy - above, last]];
         side::<1>(&mut self.table, &corners[0], &corners[1]);
         side::<0>(&mut self.table, &corners[0], &corners[2]);
@@ -100,7 +99,8 @@ impl Spans {
             side::<0>(&mut self.table, &corners[2], &corners[1]);
         }
         // All columns lie within 32 pixels of the top.
-        if (self.column - window.columns.start) | (window.columns.end - self.column - 2 * ROWS as i32 - 1) < 0
+        if (self.column - window.columns.start) | (window.columns.end - self.column - 2 * WIDEST as i32 - 1)
+            < 0
         {
             return self.clip(window);
         }
@@ -141,7 +141,7 @@ impl Spans {
     /// The first column and the end of a row of the table.
     #[inline]
     pub(crate) fn span(&self, row: usize) -> [u8; 2] {
-        self.table[row & (ROWS - 1)]
+        self.table[row & (WIDEST - 1)]
     }
 
     /// A row of the table on the screen: the row, and its span's start and end (exclusive).
@@ -177,7 +177,7 @@ impl Spans {
 /// |dx|·2⁻²⁴ ≤ 2⁻¹⁵. The slope's rounding moves it by 2⁻²¹ in every row, by 2⁻¹⁶ in 32 rows. What is left, 2⁻¹⁶, is more than
 /// the last bits of the line with `below`.
 #[inline(never)]
-fn side<const SIDE: usize>(table: &mut [[u8; 2]; ROWS], from: &[i32; 3], to: &[i32; 3]) {
+fn side<const SIDE: usize>(table: &mut [[u8; 2]; WIDEST], from: &[i32; 3], to: &[i32; 3]) {
     let Some(rows) = table.get_mut(from[2] as usize..to[2] as usize) else {
         return;
     };
@@ -212,7 +212,7 @@ mod tests {
                 if first >= end {
                     continue;
                 }
-                let mut table = [[0; 2]; ROWS];
+                let mut table = [[0; 2]; WIDEST];
                 side::<1>(&mut table, &[x, y, first], &[x + dx, y + dy, end]);
                 for row in first..end {
                     // The column plus ½ in 1/16 px is (x·dy + (16·row − y)·dx)/dy; of that less 1, rounded up.

@@ -104,6 +104,12 @@ impl Needs {
         matches!(self.inputs, Inputs::Color | Inputs::UvColor)
     }
 
+    /// u or v of a vertex, I16F16, with all of the scale. What is beyond ±32768 wraps.
+    #[inline(always)]
+    pub(super) fn scaled_uv(&self, vertex: &ScreenVertex, i: usize) -> i32 {
+        (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (self.scale & 31)
+    }
+
     /// The same with so much of the scale before planes are made.
     pub(super) fn finer(&self, finer: [u32; 2]) -> Self {
         let scale_log2 = finer.map(|finer| self.scale - finer);

@@ -1,6 +1,6 @@
 //! Meshes: vertices and triangles in flash.
 
-use super::vertex::Vertex;
+use super::vertex::{Vertex, is_gray as is_color_gray};
 use crate::num::I4F12;
 use core::fmt;
 
@@ -257,8 +257,7 @@ impl Bounds {
         let (mut most, mut is_gray) = (0, true);
         let mut i = 0;
         while i < count {
-            let [red, green, blue] = vertices[i].color;
-            is_gray &= red == green && green == blue;
+            is_gray &= is_color_gray(vertices[i].color);
             let [x, y, z] = vertices[i].position;
             // Up to 2¹⁶, and so 3 · 2³².
             let x = (x.to_bits() as i32 - center_x) as i64;

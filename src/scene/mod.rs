@@ -24,4 +24,5 @@ pub use plane_error::PlaneError;
 pub(crate) use projection::{Projection, Viewport};
 pub use texture::{Texture, TextureError, texels};
 pub use vertex::Vertex;
+pub(crate) use vertex::is_gray;
 pub use vertex_error::VertexError;

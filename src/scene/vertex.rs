@@ -22,6 +22,11 @@ pub struct Vertex {
 
 const _: () = assert!(size_of::<Vertex>() == 16);
 
+/// Whether a colour's channels are the same.
+pub(crate) const fn is_gray([red, green, blue]: [u8; 3]) -> bool {
+    red == green && green == blue
+}
+
 impl Vertex {
     /// A vertex at a position from literals, −8 … 7.9998, each rounded to 1/4096. It is white, its texture
     /// coordinates and its normal are 0.

@@ -12,7 +12,7 @@ use super::point::{LocalPoint, position_in_axes};
 use super::stretch::Stretch;
 use crate::math::{Pose, Vec3, dot, normalized};
 use crate::num::{I2F14, I4F12, I16F16, U8F8};
-use crate::scene::Vertex;
+use crate::scene::{Vertex, is_gray};
 use core::{array, fmt};
 
 const MAX: usize = 4;
@@ -298,10 +298,6 @@ impl Lighting<'_> {
     fn lights(&self) -> &[Local] {
         self.lights.get(..usize::from(self.count)).unwrap_or_default()
     }
-}
-
-fn is_gray([red, green, blue]: [u8; 3]) -> bool {
-    red == green && green == blue
 }
 
 /// Light of 14 fraction bits.
