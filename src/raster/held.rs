@@ -36,8 +36,8 @@ impl TriangleSetup {
         if needs.reads_color() {
             self.set_gray(vertices, needs);
         }
-        let (needs, attributes) = (needs.scaled(), &mut self.attributes);
-        let are_set = needs.each_attribute(vertices, self.gray, |i, at, _| {
+        let (scaling, attributes) = (needs.scaled_at_once(), &mut self.attributes);
+        let are_set = needs.each_attribute(&scaling, vertices, self.gray, |i, at, _| {
             let Some(attribute) = attributes.get_mut(i) else {
                 return false;
             };
@@ -52,9 +52,9 @@ impl TriangleSetup {
         });
         if are_set && needs.reads_uv() {
             if is_level {
-                self.lean(vertices, &needs, 2, i32::MAX);
+                self.lean(vertices, &scaling, 2, i32::MAX);
             } else {
-                self.keep_small_inside(&needs);
+                self.keep_small_inside(needs);
             }
         }
         // Held planes begin at corner 0's pixel.
@@ -112,7 +112,7 @@ impl TriangleSetup {
     }
 
     /// Limits u and v of a small triangle that does not lean: u below its greatest value, v to its inset. Where u repeats within four
-    /// pixels planes are evaluated at every pixel. `needs` have all of the scale before planes are made.
+    /// pixels planes are evaluated at every pixel.
     #[inline(never)]
     fn keep_small_inside(&mut self, needs: &Needs) {
         if needs.packing.is_steep(self.attributes[0].plane.steps[0]) {

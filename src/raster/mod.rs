@@ -9,6 +9,7 @@ mod packing;
 mod plane;
 mod prepared;
 mod rows;
+mod scaling;
 mod setup;
 mod small;
 mod span;

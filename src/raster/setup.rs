@@ -51,6 +51,7 @@
 
 use super::attribute::Attribute;
 use super::plane::Plane;
+use super::scaling::Scaling;
 use super::straight::{Bend, Straight};
 use super::triangle::{Needs, TriangleSetup, edges};
 use crate::geometry::{Inputs, Oriented, position};
@@ -156,7 +157,8 @@ struct Bent<'a> {
     q: [u32; 3],
     /// 1/(the step of q along a row), from that normalised.
     reciprocal: i32,
-    needs: &'a Needs,
+    every_pixel: bool,
+    scaling: &'a Scaling,
 }
 
 impl TriangleSetup {
@@ -172,29 +174,14 @@ impl TriangleSetup {
         if needs.reads_color() {
             self.set_gray(&triangle.vertices, needs);
         }
-        if needs.scale != 0 && needs.packings[0].inset > 0 {
-            return self.set_scaled(triangle, needs);
-        }
-        self.set_planes(triangle, needs);
-    }
-
-    /// Where texture coordinates are scaled, as much of the scale as there is room for goes into planes: for their rounding is
-    /// multiplied by the rest of it. What is beyond ±32768 wraps, as it would if it were scaled at the end.
-    #[cold]
-    #[inline(never)]
-    fn set_scaled(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let [a, b, c] = triangle.vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        let finer = [0, 1].map(|i| {
-            let size =
-                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
-            // Differences stay below 2²⁹.
-            size.leading_zeros().saturating_sub(3).min(needs.scale)
-        });
-        self.set_planes(triangle, &needs.finer(finer));
+        let is_scaled = needs.scale != 0 && needs.reads_uv();
+        let scaling =
+            if is_scaled { needs.scaled_for(&triangle.vertices) } else { needs.scaled_at_the_end() };
+        self.set_planes(triangle, needs, &scaling);
     }
 
     #[inline(never)]
-    fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+    fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs, scaling: &Scaling) {
         self.area = Reciprocal::precise(triangle.area);
         let mut slopes = Slopes::new(self, triangle.area);
         let near_w = triangle.vertices.map(|vertex| vertex.q.to_bits());
@@ -222,23 +209,23 @@ impl TriangleSetup {
             _ => true,
         };
         if self.straight {
-            needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
+            needs.each_attribute(scaling, &triangle.vertices, self.gray, |i, at, scale_log2| {
                 let attribute = &mut self.attributes[i];
                 let rise = attribute.set_range(at, scale_log2);
                 attribute.plane.origin = attribute.origin();
                 slopes.set_plane(&mut attribute.plane, rise);
                 true
             });
-            if needs.packings[0].inset > 0 {
-                self.settle(&triangle.vertices, needs, is_exact.then_some(slopes.fraction_bits));
+            if needs.reads_uv() {
+                self.settle(&triangle.vertices, scaling, is_exact.then_some(slopes.fraction_bits));
             }
             return;
         }
         slopes.set_plane_of(&mut self.q, q);
         self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
         let reciprocal = self.set_q_step(needs.every_pixel);
-        let bent = Bent { slopes: &slopes, q, reciprocal, needs };
-        needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
+        let bent = Bent { slopes: &slopes, q, reciprocal, every_pixel: needs.every_pixel, scaling };
+        needs.each_attribute(scaling, &triangle.vertices, self.gray, |i, at, scale_log2| {
             self.set_bent_attribute(i, &at, scale_log2, &bent);
             true
         });
@@ -276,11 +263,11 @@ impl TriangleSetup {
         let Some(attribute) = self.attributes.get_mut(i) else {
             return;
         };
-        let Bent { slopes, q, reciprocal, needs } = bent;
+        let &Bent { slopes, q, reciprocal, every_pixel, scaling } = bent;
         let rise = attribute.set_range(*at, scale_log2);
-        let rise = contract(attribute, rise, i, needs, self.is_extreme);
+        let rise = contract(attribute, rise, i, scaling, self.is_extreme);
         attribute.plane.origin = 0;
-        if self.sliver && needs.every_pixel {
+        if self.sliver && every_pixel {
             // For `resolve_in_sliver`.
             return slopes.set_plane(&mut attribute.plane, rise);
         }
@@ -292,9 +279,9 @@ impl TriangleSetup {
         slopes
             .set_plane(&mut attribute.plane, products.map(|product| shift_round_short(product, 32 - zeros)));
         // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
-        let inset = u32::from(needs.packings[1].inset);
+        let inset = u32::from(scaling.packing(1).inset);
         let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
-        attribute.set_horizon(self.q_rises, self.q_step_zeros, *reciprocal, inset);
+        attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
     }
 }
 
@@ -312,10 +299,10 @@ fn contract(
     attribute: &mut Attribute,
     rise: [i32; 2],
     i: usize,
-    needs: &Needs,
+    scaling: &Scaling,
     is_extreme: bool,
 ) -> [i32; 2] {
-    let packing = &needs.packings[i & 1];
+    let packing = scaling.packing(i);
     let (least, most_shift) = if is_extreme { (3, 31) } else { (7, 15) };
     let log2 = if i < 2 { packing.contraction_log2().max(least) } else { least };
     if attribute.range >> log2 > 1 {

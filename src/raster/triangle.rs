@@ -68,11 +68,8 @@ pub(crate) struct Needs {
     pub(crate) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
     pub(crate) scale: u32,
-    /// Of that, as much before planes are made of them (see [`TriangleSetup::set`]), and the rest at the end.
-    pub(crate) finer: [u32; 2],
-    pub(crate) scale_log2: [u32; 2],
     /// How u and v are packed, before they are scaled.
-    pub(crate) packings: [Packing; 2],
+    pub(crate) unscaled_packing: Packing,
     /// How they are packed with all of the scale, as small triangles have it.
     pub(crate) packing: Packing,
     /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
@@ -108,45 +105,6 @@ impl Needs {
     #[inline(always)]
     pub(super) fn scaled_uv(&self, vertex: &ScreenVertex, i: usize) -> i32 {
         (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (self.scale & 31)
-    }
-
-    /// The same with so much of the scale before planes are made.
-    pub(super) fn finer(&self, finer: [u32; 2]) -> Self {
-        let scale_log2 = finer.map(|finer| self.scale - finer);
-        Self { finer, scale_log2, packings: [0, 1].map(|i| self.packings[i].finer(finer[i])), ..*self }
-    }
-
-    /// The same with all of the scale before planes are made.
-    #[inline(never)]
-    pub(super) fn scaled(&self) -> Self {
-        self.finer([self.scale; 2])
-    }
-
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
-    #[inline]
-    pub(crate) fn each_attribute(
-        &self,
-        vertices: &[&ScreenVertex; 3],
-        gray: bool,
-        mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
-    ) -> bool {
-        let first = if self.reads_uv() { 0 } else { 2 };
-        let end = if !self.reads_color() {
-            2
-        } else if gray {
-            3
-        } else {
-            5
-        };
-        (first..end).all(|i| {
-            let at = |vertex: &ScreenVertex| match i {
-                0 => vertex.u.to_bits() << (self.finer[0] & 31),
-                1 => vertex.v.to_bits() << (self.finer[1] & 31),
-                _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
-            };
-            set(i - first, vertices.map(at), if i < 2 { self.scale_log2[i] } else { 0 })
-        })
     }
 }
 

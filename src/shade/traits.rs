@@ -52,10 +52,7 @@ impl Traits {
             straight: if is_orthographic { Straight::Always } else { self.straight },
             every_pixel: self.every_pixel,
             scale,
-            finer: [0; 2],
-            // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
-            scale_log2: [scale, core::hint::black_box(scale)],
-            packings: [packing; 2],
+            unscaled_packing: packing,
             margins: of_small.margins(),
             packing: of_small,
             color_step: F::COLOR_STEP.into(),
