@@ -4,9 +4,10 @@
 //! - Out: its rows, and its planes.
 //! - Assumes: the corners lie in the guard band.
 
+use super::needs::Needs;
 use super::rows::Rows;
 use super::spans::SmallEdges;
-use super::triangle::{Needs, TriangleSetup};
+use super::triangle::TriangleSetup;
 use crate::frame::Window;
 use crate::geometry::{Oriented, ScreenVertex, position};
 
@@ -55,7 +56,7 @@ impl Prepared {
         };
         if !spans.start(&edges, window) {
             Small::Hidden
-        } else if self.setup.set_small(&vertices, &edges, area, needs) {
+        } else if (needs.code.small)(&mut self.setup, &vertices, &edges, area, needs) {
             Small::Set
         } else {
             Small::Rows
@@ -69,7 +70,7 @@ impl Prepared {
         if is_large && !self.rows.start_long(&triangle.vertices.map(position), window) {
             return false;
         }
-        self.setup.set(&triangle.nearest_first(), needs);
+        (needs.code.any)(&mut self.setup, &triangle.nearest_first(), needs);
         true
     }
 }
