@@ -15,7 +15,7 @@
 //! | determinism | the same bytes on every machine and for every band height |
 //! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |
 //! | memory | no `alloc`, no recursion; every capacity is a constant |
-//! | safety | no `unsafe`; no input panics a release build, none writes outside the target; nothing overflows in a debug build of any target, Armv6-M included |
+//! | safety | no `unsafe`; no input panics a release build (what draws into a [`Band`] at once does not even link a panic), none writes outside the target; nothing overflows in a debug build of any target, Armv6-M included |
 //! | failure | running out of a capacity is a [`CapacityError`] that names it and leaves the list as it was; bad assets, numbers out of range included, are a compile error through `const fn`s meant for `const` ([`Mesh::new`], [`Texture::new`], [`Vertex::new`], [`Vertex::uv`], [`Vertex::normal`], [`Pose::scaled_lit`]; elsewhere they panic, documented, the only exception) and a typed error through their `try_…`; cameras, [`Vec3::lit`] and everything else limit, documented, with `try_…` beside where one may want to know; targets are at most 1023 × 1023, a typed error beyond |
 //!
 //! # Example
