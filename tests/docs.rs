@@ -139,6 +139,26 @@ fn the_recipe_for_ram_adds_up() {
         rows += 1;
     }
     assert_eq!(rows, 6);
+
+    // What was counted for the scene of two of these rows, and for how much longer a frame takes in low bands.
+    let counted: Vec<_> = include_str!("../examples/firmware/bands.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(' ').collect::<Vec<_>>())
+        .collect();
+    let of = |rows: &str, column: usize| -> usize {
+        let line = counted.iter().find(|line| line[0] == rows).expect("a line of bands.txt");
+        line[column].parse().expect("a number")
+    };
+    let spaced = |bytes: usize| format!("{} {:03}", bytes / 1000, bytes % 1000);
+    for rows in ["16", "8"] {
+        let row = format!("| 240 × 320 | {rows} | 1, 1 | 546, 429, 3 | {} |", spaced(of(rows, 1)));
+        assert!(page.contains(&row), "the page has no {row}");
+    }
+    let longer = ["64", "32", "16", "8", "4"]
+        .map(|rows| format!("{} %", (of(rows, 2) * 1000 / of("whole", 2) - 1000 + 5) / 10));
+    let row = format!("| longer by | 0 | {} |", longer.join(" | "));
+    assert!(page.contains(&row), "the page has no {row}");
 }
 
 #[test]
