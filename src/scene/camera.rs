@@ -8,7 +8,8 @@ use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
 ///
-/// Unless placed otherwise it stands at the origin and looks along −z, with +x right and +y up.
+/// Unless placed otherwise it stands at the origin and looks along −z, with +x right and +y up:
+/// [`coordinates`](crate::guide::coordinates) has drawings.
 ///
 /// ```
 /// use fixel::prelude::*;
