@@ -198,8 +198,8 @@ pub use draw::{
     PerspectiveImage, Projected, ShadedTriangle, View, draw_triangle,
 };
 pub use frame::{
-    Background, Band, BigEndian, BlendFormat, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat,
-    TargetError,
+    Background, Band, BigEndian, BlendFormat, Depth16, DepthFormat, Gradient, NoDepth, PackError, Picture,
+    PixelFormat, Quantize, Quantized, QuantizedColors, TargetError, Threshold,
 };
 pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};
