@@ -20,10 +20,10 @@ pub(super) fn nearest<const N: u32, const M: u32>(n: u32) -> u32 {
 /// of 0 … `N` and green of 0 … `G`.
 #[inline(always)]
 pub(super) fn luma<const N: u32, const G: u32>([red, green, blue]: [u32; 3]) -> u8 {
-    // With 24 fraction bits: 255 of them and a half fit into 32.
+    // With 24 fraction bits: 255 of them and a half fit into 32. Rounded, so that N of each make 255.
     const fn weight(thousandths: u64, most: u32) -> u32 {
         let whole = 1000 * most as u64;
-        (((thousandths * 255) << 24) / whole) as u32
+        ((((thousandths * 255) << 24) + whole / 2) / whole) as u32
     }
     let [of_red, of_green, of_blue] = const { [weight(299, N), weight(587, G), weight(114, N)] };
     ((red * of_red + green * of_green + blue * of_blue + (1 << 23)) >> 24) as u8

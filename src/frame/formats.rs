@@ -113,7 +113,8 @@ impl PixelFormat for Gray8 {
 
     #[inline]
     fn rgb565(bits: u16) -> u8 {
-        luma::<31, 63>(split(bits))
+        // By the same weights, so that full light changes nothing.
+        Self::lit(bits, [255; 3])
     }
 
     #[inline]

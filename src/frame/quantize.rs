@@ -138,7 +138,6 @@ static NEAREST: [[u8; 8]; 8] = [[127; 8]; 8];
 ///
 /// It turns into an iterator of colours, row after row, for `fill_contiguous` of any display. For a display that takes bytes
 /// [`pack_rows`](Self::pack_rows) and [`pack_pages`](Self::pack_pages) write them.
-#[derive(Clone, Copy)]
 pub struct Quantized<'b, F: PixelFormat, C> {
     /// From the first pixel of the first row on.
     words: &'b [F::Word],
@@ -253,7 +252,6 @@ where
 }
 
 /// The colours of a [`Quantized`], row after row.
-#[derive(Clone)]
 pub struct QuantizedColors<'b, F: PixelFormat, C> {
     /// What is left of a row, and the thresholds of it.
     row: core::slice::Iter<'b, F::Word>,
@@ -294,6 +292,20 @@ where
 }
 
 impl<F: PixelFormat, C: Quantize> ExactSizeIterator for QuantizedColors<'_, F, C> where F::Color: Into<Rgb888> {}
+
+impl<F: PixelFormat, C> Clone for Quantized<'_, F, C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: PixelFormat, C> Copy for Quantized<'_, F, C> {}
+
+impl<F: PixelFormat, C> Clone for QuantizedColors<'_, F, C> {
+    fn clone(&self) -> Self {
+        Self { row: self.row.clone(), ..*self }
+    }
+}
 
 impl<F: PixelFormat, C> fmt::Debug for Quantized<'_, F, C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
