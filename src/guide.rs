@@ -14,6 +14,9 @@ pub mod assets {}
 #[doc = include_str!("guide/memory.md")]
 pub mod memory {}
 
+#[doc = include_str!("guide/displays.md")]
+pub mod displays {}
+
 #[doc = include_str!("guide/surfaces.md")]
 pub mod surfaces {}
 

@@ -169,6 +169,11 @@
 //! [`DisplayList::render_changed`] draws and sends only what changed since the last frame; without depth
 //! [`DisplayList::sort_back_to_front`] settles what is in front; two cores can render two bands of one list.
 //!
+//! # Displays of other colours
+//!
+//! A band is RGB565, `Bgr565`, `Rgb666`, `Rgb888`, `Bgr888` or `Gray8`. For a display of fewer bits, down to one, it is
+//! [dithered](Band::dithered) when it is sent, and [packed](Quantized::pack_pages). [`guide::displays`] has a table of displays.
+//!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Material`], or a [`Shader`] of yours.
 //!
@@ -199,8 +204,8 @@ pub use draw::{
     PerspectiveImage, Projected, ShadedTriangle, View, draw_triangle,
 };
 pub use frame::{
-    Background, Band, BigEndian, BlendFormat, Depth16, DepthFormat, Gradient, NoDepth, Picture, PixelFormat,
-    TargetError,
+    Background, Band, BigEndian, BlendFormat, Depth16, DepthFormat, Gradient, NoDepth, PackError, Picture,
+    PixelFormat, Quantize, Quantized, QuantizedColors, TargetError, Threshold,
 };
 pub use geometry::{Coloring, Cull, Inputs, RangeError, ScreenVertex, Stats};
 pub use math::{Pose, Quaternion, ScaleError, Turn, Vec3};

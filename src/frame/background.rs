@@ -6,10 +6,10 @@
 
 use super::format::PixelFormat;
 use crate::scene::Texture;
-use embedded_graphics::pixelcolor::{Rgb565, Rgb888, RgbColor, raw::RawU16};
+use embedded_graphics::pixelcolor::{Gray8, GrayColor, Rgb565, Rgb888, RgbColor, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
-/// What a band is cleared to: a colour, a [`Gradient`], a [`Texture`] laid over the screen like tiles, a [`Picture`], or what
+/// What a band is cleared to: a colour (of RGB565, 8 bits a channel or 8 bits of grey), a [`Gradient`], a [`Texture`] laid over the screen like tiles, a [`Picture`], or what
 /// you make of each row.
 pub trait Background<F: PixelFormat> {
     /// Fills row `y` of the screen, from column 0 on.
@@ -43,6 +43,18 @@ fn fill_evenly<W: Copy>(row: &mut [W], word: W) {
 impl<F: PixelFormat> Background<F> for Rgb565 {
     fn fill_row(&self, _: u32, row: &mut [F::Word]) {
         fill_evenly(row, F::rgb565(RawU16::from(*self).into_inner()));
+    }
+}
+
+impl<F: PixelFormat> Background<F> for Rgb888 {
+    fn fill_row(&self, _: u32, row: &mut [F::Word]) {
+        fill_evenly(row, F::rgb888(self.r(), self.g(), self.b()));
+    }
+}
+
+impl<F: PixelFormat> Background<F> for Gray8 {
+    fn fill_row(&self, _: u32, row: &mut [F::Word]) {
+        fill_evenly(row, F::gray(self.luma()));
     }
 }
 

@@ -8,7 +8,7 @@
 //! nearest step of the channel: off by at most half a step.
 
 use super::format::{BigEndian, PixelFormat};
-use embedded_graphics::pixelcolor::Rgb565;
+use embedded_graphics::pixelcolor::{Bgr565, Bgr888, Gray8, Rgb565, Rgb666, Rgb888};
 
 /// A pixel format whose words can be blended: for transparent materials and fog.
 ///
@@ -20,7 +20,7 @@ use embedded_graphics::pixelcolor::Rgb565;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot blend pixels",
     label = "transparent materials and fog need a format that is `BlendFormat`",
-    note = "`Rgb565` and `BigEndian<Rgb565>` are; implement `BlendFormat` for a format of your own"
+    note = "all formats of this crate are; implement `BlendFormat` for a format of your own"
 )]
 pub trait BlendFormat: PixelFormat {
     /// Source over target: (s·a + t·(255 − a)) / 255.
@@ -105,5 +105,92 @@ impl<F: BlendFormat<Word = u16>> BlendFormat for BigEndian<F> {
     #[inline]
     fn multiply(target: u16, source: u16) -> u16 {
         F::multiply(u16::from_be(target), u16::from_be(source)).to_be()
+    }
+}
+
+/// The fields are as wide as those of RGB565, and which is red does not matter.
+impl BlendFormat for Bgr565 {
+    #[inline]
+    fn over(target: u16, source: u16, alpha: u8) -> u16 {
+        Rgb565::over(target, source, alpha)
+    }
+
+    #[inline]
+    fn add(target: u16, source: u16, alpha: u8) -> u16 {
+        Rgb565::add(target, source, alpha)
+    }
+
+    #[inline]
+    fn multiply(target: u16, source: u16) -> u16 {
+        Rgb565::multiply(target, source)
+    }
+}
+
+/// The first byte in the upper half, the last one in the lower one.
+#[inline(always)]
+fn outer([first, _, last]: [u8; 3]) -> u32 {
+    u32::from(first) << 16 | u32::from(last)
+}
+
+#[inline(always)]
+fn bytes(outer: u32, middle: u32) -> [u8; 3] {
+    [(outer >> 16) as u8, middle as u8, outer as u8]
+}
+
+/// Formats of three bytes: what their levels are times, the greatest level, and products of two levels divided by it.
+macro_rules! three_bytes {
+    ($($format:ident: $shift:literal $most:literal $product:expr;)*) => {$(
+        impl BlendFormat for $format {
+            #[inline]
+            fn over(target: [u8; 3], source: [u8; 3], alpha: u8) -> [u8; 3] {
+                let (a, rest) = (u32::from(alpha), u32::from(255 - alpha));
+                let [t, s] = [target, source].map(|word| word.map(|byte| byte >> $shift));
+                let outer = over_255(outer(s) * a + outer(t) * rest, $most << 16 | $most);
+                bytes(outer, over_255(u32::from(s[1]) * a + u32::from(t[1]) * rest, $most)).map(|byte| byte << $shift)
+            }
+
+            #[inline]
+            fn add(target: [u8; 3], source: [u8; 3], alpha: u8) -> [u8; 3] {
+                core::array::from_fn(|i| {
+                    let [t, s] = [target[i], source[i]].map(|byte| u32::from(byte >> $shift));
+                    (((t + over_255(s * u32::from(alpha), $most)).min($most)) << $shift) as u8
+                })
+            }
+
+            #[inline]
+            fn multiply(target: [u8; 3], source: [u8; 3]) -> [u8; 3] {
+                core::array::from_fn(|i| {
+                    let [t, s] = [target[i], source[i]].map(|byte| u32::from(byte >> $shift));
+                    ($product(t * s) << $shift) as u8
+                })
+            }
+        }
+    )*};
+}
+
+three_bytes! {
+    Rgb888: 0 255 |product| over_255(product, 255);
+    Bgr888: 0 255 |product| over_255(product, 255);
+    // 1/63 with 20 fraction bits, as above.
+    Rgb666: 2 63 |product: u32| (product * 16644 + (1 << 19)) >> 20;
+}
+
+/// The grey of what is blended is the blend of greys, but for what [`BlendFormat::add`] limits and [`BlendFormat::multiply`] multiplies:
+/// there colours go a channel at a time.
+impl BlendFormat for Gray8 {
+    #[inline]
+    fn over(target: u8, source: u8, alpha: u8) -> u8 {
+        let a = u32::from(alpha);
+        over_255(u32::from(source) * a + u32::from(target) * (255 - a), 255) as u8
+    }
+
+    #[inline]
+    fn add(target: u8, source: u8, alpha: u8) -> u8 {
+        target.saturating_add(over_255(u32::from(source) * u32::from(alpha), 255) as u8)
+    }
+
+    #[inline]
+    fn multiply(target: u8, source: u8) -> u8 {
+        over_255(u32::from(target) * u32::from(source), 255) as u8
     }
 }

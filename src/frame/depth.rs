@@ -7,6 +7,11 @@
 use crate::num::U1F31;
 
 /// How depth is stored, and which of two surfaces is visible: a test, and a store for what was drawn.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a format of depths",
+    label = "depths are `Depth16`, or none, `NoDepth`",
+    note = "with `NoDepth` what is drawn last is in front, and a band takes `&mut []` for its depths"
+)]
 pub trait DepthFormat: 'static {
     /// The depth of one pixel in memory.
     type Word: Copy;

@@ -7,7 +7,7 @@
 use super::band::Band;
 use super::depth::DepthFormat;
 use super::format::PixelFormat;
-use super::window::Window;
+use super::window::{Window, overlap};
 use core::convert::Infallible;
 use core::ops::Range;
 use embedded_graphics::Pixel;
@@ -31,14 +31,8 @@ impl<F: PixelFormat, D: DepthFormat> Band<'_, F, D> {
         })
     }
 
-    /// The columns and the rows of an area that lie in the band. (`Rectangle::intersection` overflows on areas at the ends of the
-    /// range of coordinates.)
+    /// The columns and the rows of an area that lie in the band.
     fn within(&self, area: &Rectangle) -> Option<(Range<i32>, Range<i32>)> {
-        let overlap = |start: i32, length: u32, band: Range<i32>| {
-            let end = (i64::from(start) + i64::from(length)).min(i64::from(band.end)) as i32;
-            let start = start.max(band.start);
-            (start < end).then_some(start..end)
-        };
         let Window { columns, rows } = self.window();
         let columns = overlap(area.top_left.x, area.size.width, columns)?;
         Some((columns, overlap(area.top_left.y, area.size.height, rows)?))

@@ -4,14 +4,34 @@
 //! - Out: its word, which is one pixel in memory.
 //! - Assumes: nothing.
 
+use super::threshold::{Quantize, Threshold};
 use core::marker::PhantomData;
-use embedded_graphics::pixelcolor::{PixelColor, Rgb565, raw::RawU16};
+use embedded_graphics::pixelcolor::{PixelColor, Rgb565, Rgb888, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
 /// How a colour is stored in memory.
 ///
-/// A colour type that is its own format is stored as a word in the machine's byte order. [`BigEndian`] has the order that
-/// most SPI displays want, so that rows can be sent as they are.
+/// A colour type that is its own format is stored as a word in the machine's byte order, or as three bytes in the order of the
+/// wire. [`BigEndian`] has the order that most SPI displays want, so that rows can be sent as they are.
+///
+/// | format | word | what it is for |
+/// |---|---|---|
+/// | `Rgb565`, `BigEndian<Rgb565>` | `u16` | most colour displays, and the fastest: textures are RGB565, and its loops are compiled with this crate |
+/// | `Bgr565`, `BigEndian<Bgr565>` | `u16` | the same with red and blue swapped |
+/// | `Rgb888`, `Bgr888` | `[u8; 3]`, as its name says | displays of 24 bits; and to be [dithered](crate::Band::dithered) for those of 18, 16 and less |
+/// | `Rgb666` | `[u8; 3]`: red, green, blue, each in the upper six bits of its byte | displays in their mode of 18 bits (ILI9341, ILI9488) |
+/// | `Gray8` | `u8`, the luma of ITU-R BT.601 | grey and monochrome displays, [dithered](crate::Band::dithered); the least memory |
+///
+/// Each holds the nearest to what it is given, and to texels in light, to half a step of its channel. Only `Rgb565` cuts them: in it a
+/// channel of 8 bits is at most 0.86 steps too dark, and a texel in light 1.1 steps off. Rounding would take 22 / 9 cycles a pixel of three channels, on a Cortex-M0+ / M4F; to see
+/// all that 16 bits can show, draw in `Rgb888` and [dither](crate::Band::dithered). [`guide::cost`](crate::guide::cost) has what pixels of each take.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a format that pixels are drawn in",
+    label = "a band's pixels are `Rgb565`, `Bgr565`, `Rgb666`, `Rgb888`, `Bgr888` or `Gray8`",
+    note = "for a display of fewer bits (`BinaryColor`, `Gray2`, `Gray4`) draw in `Gray8` and send `band.dithered::<BinaryColor>()`",
+    note = "for a display of other colours draw in `Rgb565` or `Rgb888` and pass `&mut display.color_converted()` of embedded-graphics, or implement `PixelFormat` for a format of your own",
+    note = "for two-byte words in the order of most SPI displays there is `BigEndian<Rgb565>`"
+)]
 pub trait PixelFormat: 'static {
     /// One pixel in memory.
     type Word: Copy;
@@ -29,6 +49,20 @@ pub trait PixelFormat: 'static {
 
     /// The word of three 8-bit channels.
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
+
+    /// The word of a texel, an RGB565 number, in light. Each channel of light is a whole number of 0 … 255, and 255 leaves the texel
+    /// as it is. This one's is an RGB565 number again, each channel rounded down; a format of your own with more bits than that may be finer.
+    #[inline]
+    #[must_use]
+    fn lit(texel: u16, light: [u32; 3]) -> Self::Word {
+        // 0 … 256, so that full light leaves a texel as it is.
+        let [red, green, blue] = light.map(|light| light + (light >> 7));
+        let texel = u32::from(texel);
+        let red = ((texel >> 11) * red) >> 8;
+        let green = ((texel >> 5 & 63) * green) >> 8;
+        let blue = ((texel & 31) * blue) >> 8;
+        Self::rgb565((red << 11 | green << 5 | blue) as u16)
+    }
 
     /// The least change of a channel that the format shows, in whole levels of 1/255, 1 … 8: that of its finest channel. Colours of small
     /// triangles may be off by this; ¼ pixel is the bound of all others.
@@ -69,6 +103,17 @@ pub trait PixelFormat: 'static {
     #[must_use]
     fn texel(_word: Self::Word) -> u16 {
         0
+    }
+
+    /// A word's colour on a display of few bits.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn quantize<C: Quantize>(word: Self::Word, threshold: Threshold) -> C
+    where
+        Self::Color: Into<Rgb888>,
+    {
+        C::quantize(Self::decode(word).into(), threshold)
     }
 
     /// The word of a grey, whose three channels are all `level`.
@@ -174,6 +219,11 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
         F::rgb888(red, green, blue).to_be()
     }
 
+    #[inline]
+    fn lit(texel: u16, light: [u32; 3]) -> u16 {
+        F::lit(texel, light).to_be()
+    }
+
     const COLOR_STEP: u8 = F::COLOR_STEP;
 
     const KEEPS: bool = F::KEEPS;
@@ -202,7 +252,7 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use embedded_graphics::pixelcolor::Bgr565;
+    use embedded_graphics::pixelcolor::{Bgr565, Gray8, Rgb666};
 
     /// A format of a user, whose words are no RGB565.
     struct Swapped;
@@ -240,6 +290,11 @@ mod tests {
             (BigEndian::<Rgb565>::KEEPS, keeps::<BigEndian<Rgb565>>()),
             (Swapped::KEEPS, keeps::<Swapped>()),
             (BigEndian::<Swapped>::KEEPS, keeps::<BigEndian<Swapped>>()),
+            (Bgr565::KEEPS, keeps::<Bgr565>()),
+            (BigEndian::<Bgr565>::KEEPS, keeps::<BigEndian<Bgr565>>()),
+            (Rgb888::KEEPS, keeps::<Rgb888>()),
+            (Rgb666::KEEPS, keeps::<Rgb666>()),
+            (Gray8::KEEPS, keeps::<Gray8>()),
         ] {
             assert_eq!(says, keeps);
         }

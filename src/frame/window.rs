@@ -12,6 +12,15 @@ pub(crate) const fn first_center(at: i32) -> i32 {
     (at + 7) >> 4
 }
 
+/// The columns, or rows, of an area that lie in a range. (`Rectangle::intersection` overflows on areas at the ends of the range of
+/// coordinates.)
+#[inline]
+pub(super) fn overlap(start: i32, length: u32, range: Range<i32>) -> Option<Range<i32>> {
+    let end = (i64::from(start) + i64::from(length)).min(i64::from(range.end)) as i32;
+    let start = start.max(range.start);
+    (start < end).then_some(start..end)
+}
+
 /// The part of the screen that is drawn to.
 #[derive(Clone, Debug)]
 pub(crate) struct Window {

@@ -138,11 +138,5 @@ pub(crate) fn color<F: PixelFormat>([red, green, blue]: [u32; 3]) -> F::Word {
 /// The word of a texel times light, of which 255 is full in each channel.
 #[inline]
 pub(crate) fn lit<F: PixelFormat>(texel: u16, light: [u32; 3]) -> F::Word {
-    // 0 … 256, so that full light leaves a texel as it is.
-    let [red, green, blue] = light.map(|light| light + (light >> 7));
-    let texel = u32::from(texel);
-    let red = ((texel >> 11) * red) >> 8;
-    let green = ((texel >> 5 & 63) * green) >> 8;
-    let blue = ((texel & 31) * blue) >> 8;
-    F::rgb565((red << 11 | green << 5 | blue) as u16)
+    F::lit(texel, light)
 }

@@ -17,7 +17,7 @@
 use super::cover::{Cover, Layers};
 use super::fill::Fill;
 use super::perspective::Perspective;
-use crate::frame::{DepthFormat, PixelFormat};
+use crate::frame::{BAYER, DepthFormat, PixelFormat};
 use crate::num::U1F31;
 use core::hint::black_box;
 
@@ -237,22 +237,3 @@ fn times(a: u8, b: u8) -> u8 {
     let product = u32::from(a) * u32::from(b) + 128;
     ((product + (product >> 8)) >> 8) as u8
 }
-
-/// Bayer's pattern of 8×8, as opacities: a pixel is drawn where it is more opaque. Entry t of 0 … 63 is 255·(t + ½) / 64,
-/// rounded down: of each 64 pixels are drawn as many as alpha has 64ths, to the nearest.
-static BAYER: [[u8; 8]; 8] = {
-    let mut pattern = [[0; 8]; 8];
-    let mut i = 0;
-    while i < 64 {
-        let (x, y) = (i % 8, i / 8);
-        // Bits of x ^ y and y, the lowest first, are the highest of t.
-        let (mut t, mut bit) = (0, 0);
-        while bit < 3 {
-            t = t << 2 | ((x ^ y) >> bit & 1) << 1 | y >> bit & 1;
-            bit += 1;
-        }
-        pattern[y][x] = (255 * (2 * t + 1) / 128) as u8;
-        i += 1;
-    }
-    pattern
-};
