@@ -1,4 +1,4 @@
-//! fixel on both cores of an RP2040: a torus on an ST7789 of 240×320 pixels.
+//! fixel on both cores of an RP2040: the Earth turns on an ST7789 of 240×320 pixels.
 //!
 //! Core 0 records each frame as a display list. Then both cores render its bands, core 0 the even ones and core 1 the odd ones,
 //! while a DMA channel sends those that are drawn. See README.md for the wiring.
@@ -7,6 +7,8 @@
 #![no_main]
 
 mod bus;
+mod frames;
+#[path = "../../pico/src/scene.rs"]
 mod scene;
 mod st7789;
 
@@ -25,7 +27,7 @@ use rp2040_hal::multicore::{Multicore, Stack};
 use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
 use static_cell::ConstStaticCell;
 
-use scene::{Format, SCREEN};
+use frames::{Format, SCREEN};
 
 const CORES: usize = 2;
 /// Rows of a band.
@@ -88,12 +90,12 @@ impl Painter {
         let size = Size::new(SCREEN.width, ROWS as u32);
         let band =
             Band::new(size, PIXELS[core].take(), DEPTH[core].take()).expect("the memory is of this size");
-        Self { core, band, sky: scene::sky() }
+        Self { core, band, sky: scene::sky(SCREEN) }
     }
 
     /// Draws this core's bands of the frame, one while the one before is sent.
     fn frame(&mut self) {
-        let list = scene::list().read();
+        let list = frames::list().read();
         for number in (self.core..BANDS).step_by(CORES) {
             let top = (number * ROWS) as u32;
             self.band.move_to(top);
@@ -160,7 +162,10 @@ fn main() -> ! {
     let mut painter = Painter::new(0);
     for frame in (1..=u32::MAX).cycle() {
         // Core 1 waits: nobody reads the list.
-        scene::record(frame, &mut scene::list().write()).expect("the list has room for the torus");
+        let mut list = frames::list().write();
+        list.clear();
+        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
+        drop(list);
         report(&RECORDED, frame);
         painter.frame();
         wait_for(&DRAWN, frame);

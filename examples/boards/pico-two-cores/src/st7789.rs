@@ -4,7 +4,7 @@
 
 use embedded_hal::{delay::DelayNs, digital::OutputPin, spi::SpiBus};
 
-use crate::scene::SCREEN;
+use crate::frames::SCREEN;
 
 const SOFTWARE_RESET: u8 = 0x01;
 const SLEEP_OUT: u8 = 0x11;
