@@ -18,6 +18,7 @@ use fixel::{Band, BigEndian, Depth16};
 use fixel_drivers::Rows;
 use mipidsi::{Builder, interface::SpiInterface, models::ST7789, options::ColorInversion};
 use panic_halt as _;
+use scene::{List, Memory, Scene};
 use static_cell::ConstStaticCell;
 
 esp_bootloader_esp_idf::esp_app_desc!();
@@ -29,7 +30,7 @@ const ROWS: u32 = 32; // of a band
 const WORDS: usize = (SCREEN.width * ROWS) as usize;
 static PIXELS: ConstStaticCell<[u16; WORDS]> = ConstStaticCell::new([0; WORDS]);
 static DEPTH: ConstStaticCell<[u16; WORDS]> = ConstStaticCell::new([0; WORDS]);
-static MEMORY: ConstStaticCell<scene::Memory> = ConstStaticCell::new(scene::Memory::new());
+static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
 
 #[esp_hal::main]
 fn main() -> ! {
@@ -47,18 +48,18 @@ fn main() -> ! {
     let mut buffer = [0; 16];
     let interface = SpiInterface::new(device, data_command, &mut buffer);
     let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
-    let display = builder.init(&mut Delay::new()).ok().expect("the bus takes all bytes");
+    let display = builder.init(&mut Delay::new()).expect("the bus takes all bytes");
     let (device, data_command) = display.release().0.release();
     let mut rows = Rows::new(device, data_command);
 
     let size = Size::new(SCREEN.width, ROWS);
     let band = Band::<BigEndian<Rgb565>, Depth16>::new(size, PIXELS.take(), DEPTH.take());
     let mut band = band.expect("its memory is of its size");
-    let (memory, sky) = (MEMORY.take(), scene::sky(SCREEN));
+    let (memory, scene) = (MEMORY.take(), Scene::new(SCREEN));
     for frame in (0..=u32::MAX).cycle() {
-        let mut list = scene::List::new(memory);
-        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
-        let shown = list.render_bands(SCREEN.height, &sky, &mut band, |area, band| {
+        let mut list = List::new(memory);
+        scene.record(frame, &mut list).expect("it has room for the globe");
+        let shown = list.render_bands(SCREEN.height, &scene.sky, &mut band, |area, band| {
             // 2D on top: draw it into `band` here.
             rows.show(area, band.as_bytes())
         });

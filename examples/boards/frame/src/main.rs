@@ -21,6 +21,7 @@ use fixel::embedded_graphics::pixelcolor::{BinaryColor, Gray8, Rgb565};
 use fixel::embedded_graphics::prelude::*;
 use fixel::{Band, BigEndian, Depth16};
 use mipidsi::{Builder, interface::SpiInterface, models::ST7789};
+use scene::Scene;
 
 const SCREEN: Size = Size::new(240, 320);
 const OLED: Size = Size::new(128, 64);
@@ -45,7 +46,7 @@ extern "C" fn frame_list(frame: u32) -> u32 {
     let list = unsafe { &mut *addr_of_mut!(LIST) };
     let list = list.get_or_insert_with(|| scene::List::new(unsafe { &mut *addr_of_mut!(MEMORY) }));
     list.clear();
-    scene::record(frame, SCREEN, list).map_or(0, |()| list.lengths()[1] as u32)
+    Scene::new(SCREEN).record(frame, list).map_or(0, |()| list.lengths()[1] as u32)
 }
 
 #[unsafe(no_mangle)]
@@ -56,7 +57,7 @@ extern "C" fn frame_bands(rows: u32) -> u32 {
     if let (Some(list), Ok(mut band)) =
         (list, Band::<Rgb, Depth16>::new(Size::new(SCREEN.width, rows), pixels, depth))
     {
-        let Ok(()) = list.render_bands(SCREEN.height, &scene::sky(SCREEN), &mut band, |area, band| {
+        let Ok(()) = list.render_bands(SCREEN.height, &Scene::new(SCREEN).sky, &mut band, |area, band| {
             black_box(band.as_bytes());
             drawn += area.size.height;
             Ok::<_, Infallible>(())
@@ -70,9 +71,10 @@ extern "C" fn frame_driver(rows: u32) -> u32 {
     let (pixels, depth) = unsafe { (&mut *addr_of_mut!(PIXELS), &mut *addr_of_mut!(DEPTH)) };
     let mut buffer = [0; 512];
     let builder = Builder::new(ST7789, SpiInterface::new(Nothing, Nothing, &mut buffer));
-    let (Ok(mut display), Ok(mut band)) =
-        (builder.init(&mut Nothing), Band::<Rgb565, Depth16>::new(Size::new(SCREEN.width, rows), pixels, depth))
-    else {
+    let (Ok(mut display), Ok(mut band)) = (
+        builder.init(&mut Nothing),
+        Band::<Rgb565, Depth16>::new(Size::new(SCREEN.width, rows), pixels, depth),
+    ) else {
         return 0;
     };
     let mut sent = 0;
@@ -89,7 +91,7 @@ extern "C" fn frame_oled_list(frame: u32) -> u32 {
     let list = unsafe { &mut *addr_of_mut!(OLED_LIST) };
     let list = list.get_or_insert_with(|| scene::List::new(unsafe { &mut *addr_of_mut!(OLED_MEMORY) }));
     list.clear();
-    scene::record(frame, OLED, list).map_or(0, |()| list.lengths()[1] as u32)
+    Scene::for_black_and_white(OLED).record(frame, list).map_or(0, |()| list.lengths()[1] as u32)
 }
 
 #[unsafe(no_mangle)]
@@ -100,14 +102,15 @@ extern "C" fn frame_oled_bands(rows: u32) -> u32 {
     if let (Some(list), Ok(mut band)) =
         (list, Band::<Gray8, Depth16>::new(Size::new(OLED.width, rows), pixels, depth))
     {
-        let Ok(()) = list.render_bands(OLED.height, &scene::sky(OLED), &mut band, |area, band| {
-            let mut pages = [0; (OLED.width * OLED.height / 8) as usize];
-            if let Ok(pages) = band.dithered::<BinaryColor>().pack_pages(&mut pages) {
-                black_box(pages);
-                drawn += area.size.height;
-            }
-            Ok::<_, Infallible>(())
-        });
+        let Ok(()) =
+            list.render_bands(OLED.height, &Scene::for_black_and_white(OLED).sky, &mut band, |area, band| {
+                let mut pages = [0; (OLED.width * OLED.height / 8) as usize];
+                if let Ok(pages) = band.dithered::<BinaryColor>().pack_pages(&mut pages) {
+                    black_box(pages);
+                    drawn += area.size.height;
+                }
+                Ok::<_, Infallible>(())
+            });
     }
     drawn
 }

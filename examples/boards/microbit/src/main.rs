@@ -12,6 +12,7 @@ use fixel::{Band, Depth16};
 use nrf52833_hal::twim::{Frequency, Pins, Twim};
 use nrf52833_hal::{Clocks, gpio, pac};
 use panic_halt as _;
+use scene::{List, Memory, Scene};
 use ssd1306::prelude::*;
 use ssd1306::{I2CDisplayInterface, Ssd1306};
 use static_cell::ConstStaticCell;
@@ -21,7 +22,7 @@ const ROWS: u32 = 16; // of a band, two of the display's pages of 8
 const PIXELS_OF_BAND: usize = (SCREEN.width * ROWS) as usize;
 static PIXELS: ConstStaticCell<[u8; PIXELS_OF_BAND]> = ConstStaticCell::new([0; PIXELS_OF_BAND]);
 static DEPTH: ConstStaticCell<[u16; PIXELS_OF_BAND]> = ConstStaticCell::new([0; PIXELS_OF_BAND]);
-static MEMORY: ConstStaticCell<scene::Memory> = ConstStaticCell::new(scene::Memory::new());
+static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -45,11 +46,11 @@ fn main() -> ! {
     let size = Size::new(SCREEN.width, ROWS);
     let band = Band::<Gray8, Depth16>::new(size, PIXELS.take(), DEPTH.take());
     let mut band = band.expect("its memory is of its size");
-    let (memory, sky) = (MEMORY.take(), scene::sky(SCREEN));
+    let (memory, scene) = (MEMORY.take(), Scene::for_black_and_white(SCREEN));
     for frame in (0..=u32::MAX).cycle() {
-        let mut list = scene::List::new(memory);
-        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
-        let shown = list.render_bands(SCREEN.height, &sky, &mut band, |_, band| {
+        let mut list = List::new(memory);
+        scene.record(frame, &mut list).expect("it has room for the globe");
+        let shown = list.render_bands(SCREEN.height, &scene.sky, &mut band, |_, band| {
             let mut pages = [0; PIXELS_OF_BAND / 8];
             let pages = band.dithered::<BinaryColor>().pack_pages(&mut pages);
             display.draw(pages.expect("bands are of whole pages"))

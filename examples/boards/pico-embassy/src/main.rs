@@ -18,6 +18,7 @@ use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
 use fixel_drivers::{AsyncRows, Memory};
 use lcd_async::{Builder, interface::SpiInterface, models::ST7789, options::ColorInversion};
 use panic_halt as _;
+use scene::{List, Scene};
 use static_cell::ConstStaticCell;
 
 const BUS: u32 = 62_500_000; // bits a second, half of the chip's clock: take less for long wires
@@ -58,17 +59,17 @@ async fn main(spawner: Spawner) {
 
     // lcd-async sets the display up, and gives the bus back.
     let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
-    let display = builder.init(&mut Delay).await.ok().expect("the bus takes all bytes");
+    let display = builder.init(&mut Delay).await.expect("the bus takes all bytes");
     let (device, data_command) = display.release().0.release();
     let mut rows = AsyncRows::new(device, data_command);
 
     let pixels = PIXELS.each_ref().map(|pixels| pixels.take().as_mut_slice());
     let mut bands = Memory { size: Size::new(SCREEN.width, ROWS), pixels, depth: DEPTH.take() };
-    let (memory, sky) = (MEMORY.take(), scene::sky(SCREEN));
+    let (memory, scene) = (MEMORY.take(), Scene::new(SCREEN));
     for frame in (0..=u32::MAX).cycle() {
-        let mut list = scene::List::<BigEndian<Rgb565>>::new(memory);
-        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
-        let shown = rows.frame(&list, SCREEN.height, &sky, &mut bands, |_band| {
+        let mut list = List::<BigEndian<Rgb565>>::new(memory);
+        scene.record(frame, &mut list).expect("it has room for the globe");
+        let shown = rows.frame(&list, SCREEN.height, &scene.sky, &mut bands, |_band| {
             // 2D on top: draw it into the band here.
         });
         shown.await.expect("the bus takes all bytes");

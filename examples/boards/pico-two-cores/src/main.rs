@@ -28,6 +28,7 @@ use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
 use static_cell::ConstStaticCell;
 
 use frames::{Format, SCREEN};
+use scene::Scene;
 
 const CORES: usize = 2;
 /// Rows of a band.
@@ -82,7 +83,7 @@ fn report(counter: &AtomicU32, number: u32) {
 struct Painter {
     core: usize,
     band: Band<'static, Format, Depth16>,
-    sky: fixel::Gradient,
+    scene: Scene,
 }
 
 impl Painter {
@@ -90,7 +91,7 @@ impl Painter {
         let size = Size::new(SCREEN.width, ROWS as u32);
         let band =
             Band::new(size, PIXELS[core].take(), DEPTH[core].take()).expect("the memory is of this size");
-        Self { core, band, sky: scene::sky(SCREEN) }
+        Self { core, band, scene: Scene::new(SCREEN) }
     }
 
     /// Draws this core's bands of the frame, one while the one before is sent.
@@ -99,7 +100,7 @@ impl Painter {
         for number in (self.core..BANDS).step_by(CORES) {
             let top = (number * ROWS) as u32;
             self.band.move_to(top);
-            self.band.clear_to(&self.sky);
+            self.band.clear_to(&self.scene.sky);
             list.render(top, &mut self.band);
             let mut pixels = bus::free(self.core);
             self.band.swap_pixels(&mut pixels).expect("all bands are of one size");
@@ -164,7 +165,7 @@ fn main() -> ! {
         // Core 1 waits: nobody reads the list.
         let mut list = frames::list().write();
         list.clear();
-        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
+        painter.scene.record(frame, &mut list).expect("it has room for the globe");
         drop(list);
         report(&RECORDED, frame);
         painter.frame();

@@ -25,6 +25,7 @@ use rp235x_hal::gpio::{FunctionSio, FunctionSpi, Pin, Pins, PullDown, SioOutput}
 use rp235x_hal::pac::{self, SPI0};
 use rp235x_hal::spi::Enabled;
 use rp235x_hal::{Clock, Sio, Spi, Timer, Watchdog, clocks};
+use scene::{List, Memory, Scene};
 use static_cell::ConstStaticCell;
 
 const CRYSTAL: u32 = 12_000_000; // hertz, on a Pico 2
@@ -37,7 +38,7 @@ const ROWS: u32 = 32; // of a band
 const WORDS: usize = (SCREEN.width * ROWS) as usize;
 static PIXELS: [ConstStaticCell<[u16; WORDS]>; 2] = [const { ConstStaticCell::new([0; WORDS]) }; 2];
 static DEPTH: ConstStaticCell<[u16; WORDS]> = ConstStaticCell::new([0; WORDS]);
-static MEMORY: ConstStaticCell<scene::Memory> = ConstStaticCell::new(scene::Memory::new());
+static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
 
 /// What the ROM looks for.
 #[unsafe(link_section = ".start_block")]
@@ -65,17 +66,13 @@ impl Line {
             }
         }
     }
-
-    /// Sends the band's pixels, and gives it those that were sent before to draw into.
-    fn send(self, band: &mut Band<'static, BigEndian<Rgb565>, Depth16>) -> Self {
-        let (channel, bus, mut pixels) = self.wait();
-        band.swap_pixels(&mut pixels).expect("both are of one size");
-        Self::Sends(Config::new(channel, bytemuck::cast_slice_mut(pixels), bus).start())
-    }
 }
 
 /// The display on its bus, for a driver or for [`Rows`].
-fn device<'a>(bus: &'a mut Bus, select: &'a mut Select) -> ExclusiveDevice<&'a mut Bus, &'a mut Select, NoDelay> {
+fn device<'a>(
+    bus: &'a mut Bus,
+    select: &'a mut Select,
+) -> ExclusiveDevice<&'a mut Bus, &'a mut Select, NoDelay> {
     let Ok(device) = ExclusiveDevice::new_no_delay(bus, select);
     device
 }
@@ -86,9 +83,15 @@ fn main() -> ! {
     let mut watchdog = Watchdog::new(chip.WATCHDOG);
     let (xosc, plls) = (chip.XOSC, (chip.PLL_SYS, chip.PLL_USB));
     let clocks = clocks::init_clocks_and_plls(
-        CRYSTAL, xosc, chip.CLOCKS, plls.0, plls.1, &mut chip.RESETS, &mut watchdog,
+        CRYSTAL,
+        xosc,
+        chip.CLOCKS,
+        plls.0,
+        plls.1,
+        &mut chip.RESETS,
+        &mut watchdog,
     );
-    let clocks = clocks.ok().expect("the crystal is of 12 MHz");
+    let clocks = clocks.expect("the crystal is of 12 MHz");
     let mut timer = Timer::new_timer0(chip.TIMER0, &mut chip.RESETS, &clocks);
     let sio = Sio::new(chip.SIO);
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, sio.gpio_bank0, &mut chip.RESETS);
@@ -104,26 +107,32 @@ fn main() -> ! {
     let mut buffer = [0; 16];
     let interface = SpiInterface::new(device(&mut bus, &mut select), &mut data_command, &mut buffer);
     let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
-    builder.init(&mut timer).ok().expect("the bus takes all bytes");
+    builder.init(&mut timer).expect("the bus takes all bytes");
 
     let [pixels, spare] = PIXELS.each_ref().map(|pixels| pixels.take().as_mut_slice());
     let band = Band::<BigEndian<Rgb565>, Depth16>::new(Size::new(SCREEN.width, ROWS), pixels, DEPTH.take());
     let mut band = band.expect("its memory is of its size");
-    let (memory, sky) = (MEMORY.take(), scene::sky(SCREEN));
+    let (memory, scene) = (MEMORY.take(), Scene::new(SCREEN));
     let mut line = Line::Idle(chip.DMA.split(&mut chip.RESETS).ch0, bus, spare);
     for frame in (0..=u32::MAX).cycle() {
-        let mut list = scene::List::new(memory); // while the last band is sent
-        scene::record(frame, SCREEN, &mut list).expect("it has room for the globe");
-
-        // The window is the whole screen: its bands follow each other, with the display selected.
-        let (channel, mut bus, pixels) = line.wait();
-        let Ok(()) = bus.flush(); // the channel is done before the last bits are out
-        let mut rows = Rows::new(device(&mut bus, &mut select), &mut data_command);
-        rows.open(Rectangle::new(Point::zero(), SCREEN)).expect("the bus takes all bytes");
-        let Ok(()) = select.set_low();
-        let mut next = Some(Line::Idle(channel, bus, pixels));
-        let Ok(()) = list.render_bands(SCREEN.height, &sky, &mut band, |_, band| {
-            next = next.take().map(|line| line.send(band));
+        let mut list = List::new(memory);
+        scene.record(frame, &mut list).expect("it has room for the globe");
+        let mut next = Some(line);
+        let Ok(()) = list.render_bands(SCREEN.height, &scene.sky, &mut band, |area, band| {
+            // 2D on top: draw it into `band` here.
+            next = next.take().map(|line| {
+                let (channel, mut bus, mut pixels) = line.wait();
+                if area.top_left == Point::zero() {
+                    // The window is the whole screen: its bands follow each other, with the display selected.
+                    let Ok(()) = bus.flush(); // the channel is done before the last bits are out
+                    let mut rows = Rows::new(device(&mut bus, &mut select), &mut data_command);
+                    rows.open(Rectangle::new(area.top_left, SCREEN)).expect("the bus takes all bytes");
+                    let Ok(()) = select.set_low();
+                }
+                // The channel has what was drawn, and the band what was sent before.
+                band.swap_pixels(&mut pixels).expect("both are of one size");
+                Line::Sends(Config::new(channel, bytemuck::cast_slice_mut(pixels), bus).start())
+            });
             Ok::<_, Infallible>(())
         });
         line = next.expect("it is put back");

@@ -16,9 +16,9 @@ use bus::{Count, DataCommand, Still, Wire};
 use display_interface_spi::SPIInterface;
 use embassy_futures::block_on;
 use epd_waveshare::{epd4in2::Epd4in2, prelude::WaveshareDisplay};
+use fixel::BigEndian;
 use fixel::embedded_graphics::pixelcolor::{BinaryColor, Gray8, Rgb565, raw::RawU16};
 use fixel::embedded_graphics::{prelude::*, primitives::Rectangle};
-use fixel::BigEndian;
 use fixel_drivers::{AsyncRows, Memory, Rows};
 use panels::{Colors, Paper, Ssd1306};
 use scene::{ROWS, at_once, in_bands, on_top, with_list};
@@ -46,7 +46,9 @@ fn colors(screen: Size) -> Vec<u16> {
 
 /// The bits of a frame that is drawn at once, in grey, and dithered.
 fn bits(screen: Size) -> Vec<bool> {
-    at_once::<Gray8, _>(screen, |band| band.dithered::<BinaryColor>().into_iter().map(BinaryColor::is_on).collect())
+    at_once::<Gray8, _>(screen, |band| {
+        band.dithered::<BinaryColor>().into_iter().map(BinaryColor::is_on).collect()
+    })
 }
 
 /// Where `shown` differs from what it should be is said by its first pixel: a picture does not fit a message.
@@ -110,7 +112,7 @@ type Lcd = lcd_async::Display<
 fn lcd_async(spi: Wire<Colors>, pin: DataCommand<Colors>) -> Lcd {
     let interface = lcd_async::interface::SpiInterface::new(spi, pin);
     let builder = lcd_async::Builder::new(lcd_async::models::ST7789, interface);
-    block_on(builder.init(&mut Still { is_high: false })).ok().expect("the bus takes all")
+    block_on(builder.init(&mut Still { is_high: false })).expect("the bus takes all")
 }
 
 fn lcd_async_raw_data() -> Count {
@@ -199,7 +201,8 @@ fn ssd1306_pages<I: display_interface::WriteOnlyDataCommand>(wire: &Wire<Ssd1306
         wire.count();
         in_bands::<Gray8>(OLED, |band| {
             let mut pages = [0; (OLED.width * ROWS / 8) as usize];
-            let pages = band.dithered::<BinaryColor>().pack_pages(&mut pages).expect("bands are of whole pages");
+            let pages =
+                band.dithered::<BinaryColor>().pack_pages(&mut pages).expect("bands are of whole pages");
             display.draw(pages).expect("the bus takes all");
         });
         ssd1306_shows_the_frame(wire);
@@ -209,7 +212,8 @@ fn ssd1306_pages<I: display_interface::WriteOnlyDataCommand>(wire: &Wire<Ssd1306
 
 fn ssd1306_buffered() -> Count {
     let (wire, spi, pin) = wired(Ssd1306::new());
-    let display = ssd1306::Ssd1306::new(SPIInterface::new(spi, pin), DisplaySize128x64, DisplayRotation::Rotate0);
+    let display =
+        ssd1306::Ssd1306::new(SPIInterface::new(spi, pin), DisplaySize128x64, DisplayRotation::Rotate0);
     let mut display = display.into_buffered_graphics_mode();
     display.init().expect("the bus takes all");
     wire.count();
@@ -233,7 +237,9 @@ fn weact_paper() -> Count {
         let mut bytes = [0; (PAPER.width / 8 * ROWS) as usize];
         let bytes = band.dithered::<BinaryColor>().pack_rows(&mut bytes).expect("it is large enough");
         let Rectangle { top_left, size } = band.bounding_box();
-        display.write_partial_bw_buffer(bytes, 0, top_left.y as u32, size.width, size.height).expect("the bus takes all");
+        display
+            .write_partial_bw_buffer(bytes, 0, top_left.y as u32, size.width, size.height)
+            .expect("the bus takes all");
     });
     let count = wire.count();
     display.full_refresh().expect("the bus takes all");
@@ -272,7 +278,12 @@ fn table() -> String {
     let color_oled = 2 * COLOR_OLED.width * COLOR_OLED.height;
     let [oled, paper, large_paper] = [OLED, PAPER, LARGE_PAPER].map(|size| size.width * size.height / 8);
     let ways = [
-        ("mipidsi 0.10, ST7789", "`fill_contiguous(&area, band.colors())`, its buffer of 64 bytes", mipidsi(&mut [0; 64]), lcd),
+        (
+            "mipidsi 0.10, ST7789",
+            "`fill_contiguous(&area, band.colors())`, its buffer of 64 bytes",
+            mipidsi(&mut [0; 64]),
+            lcd,
+        ),
         ("", "… of 512 bytes", mipidsi(&mut [0; 512]), lcd),
         ("", "… of 7680 bytes", mipidsi(&mut [0; 7680]), lcd),
         ("", "set up by mipidsi, then `Rows::show`", mipidsi_rows(), lcd),
@@ -287,7 +298,8 @@ fn table() -> String {
         ("weact-studio-epd 0.1, 2.9″", "`write_partial_bw_buffer`, rows of bits", weact_paper(), paper),
         ("epd-waveshare 0.6, 4.2″", "`update_partial_frame`, rows of bits", waveshare_paper(), large_paper),
     ];
-    let mut table = String::from("| driver | way | pixels, bytes | writes | bytes |\n|---|---|---|---|---|\n");
+    let mut table =
+        String::from("| driver | way | pixels, bytes | writes | bytes |\n|---|---|---|---|---|\n");
     for (driver, way, Count { writes, bytes }, pixels) in ways {
         let _ = writeln!(table, "| {driver} | {way} | {pixels} | {writes} | {bytes} |");
     }
@@ -344,7 +356,8 @@ fn a_panel_that_is_smaller_than_its_controllers_memory_shows_the_same_as_by_its_
     let words: Vec<u16> = pixels.iter().map(|word| word.to_be()).collect();
     rows.show(area, bytemuck::cast_slice(&words)).expect("the bus takes all");
 
-    by_driver.panel(|expected| by_rows.panel(|shown| assert_same(&shown.memory, &expected.memory, LCD.width)));
+    by_driver
+        .panel(|expected| by_rows.panel(|shown| assert_same(&shown.memory, &expected.memory, LCD.width)));
 }
 
 /// Not a promise of fixel's: why README.md says to give epd-waveshare's smaller panels a column and a row fewer.
@@ -354,8 +367,11 @@ fn epd_waveshares_small_panels_take_a_window_that_is_a_byte_too_wide() {
     let window = |width, height| {
         let (wire, mut spi, pin) = wired(Paper::ssd1680());
         let [busy, reset, mut delay] = [false; 3].map(|is_high| Still { is_high });
-        let mut display = Epd1in54::new(&mut spi, busy, pin, reset, &mut delay, None).expect("the bus takes all");
-        display.update_partial_frame(&mut spi, &mut delay, &[], 0, 0, width, height).expect("the bus takes all");
+        let mut display =
+            Epd1in54::new(&mut spi, busy, pin, reset, &mut delay, None).expect("the bus takes all");
+        display
+            .update_partial_frame(&mut spi, &mut delay, &[], 0, 0, width, height)
+            .expect("the bus takes all");
         wire.panel(Paper::window)
     };
     assert_eq!(window(200, 16), [26, 17]);

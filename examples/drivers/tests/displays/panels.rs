@@ -219,7 +219,9 @@ impl Panel for Paper {
         match (self.controller, byte) {
             (Controller::Ssd1680, 0x20) | (Controller::Il0398, 0x12) => self.refresh(),
             (Controller::Il0398, 0x13) => self.window.restart(),
-            (Controller::Il0398, 0x92) => self.window = Window::new(self.stride, self.memory.len() / self.stride),
+            (Controller::Il0398, 0x92) => {
+                self.window = Window::new(self.stride, self.memory.len() / self.stride)
+            }
             _ => {}
         }
     }

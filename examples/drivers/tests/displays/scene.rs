@@ -33,7 +33,10 @@ pub(crate) fn on_top<F: PixelFormat<Color: From<Rgb888>>>(band: &mut Band<'_, F,
 }
 
 /// A scene in a list.
-pub(crate) fn with_list<F: PixelFormat, R>(screen: Size, work: impl FnOnce(&List<'_, F>, &Gradient) -> R) -> R {
+pub(crate) fn with_list<F: PixelFormat, R>(
+    screen: Size,
+    work: impl FnOnce(&List<'_, F>, &Gradient) -> R,
+) -> R {
     let mut memory = Box::new(ListMemory::<{ COUNTS.vertices }, { COUNTS.triangles }>::new());
     let mut list = List::new(&mut memory);
     draw(screen, &mut list).expect("the list has room for the torus");
@@ -47,7 +50,8 @@ where
 {
     let words = (screen.width * ROWS) as usize;
     let (mut pixels, mut depth) = (vec![F::Word::default(); words], vec![0; words]);
-    let mut band = Band::new(Size::new(screen.width, ROWS), &mut pixels, &mut depth).expect("it is of this size");
+    let mut band =
+        Band::new(Size::new(screen.width, ROWS), &mut pixels, &mut depth).expect("it is of this size");
     with_list(screen, |list, sky| {
         let Ok(()) = list.render_bands(screen.height, sky, &mut band, |_, band| {
             on_top(band);
