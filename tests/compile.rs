@@ -190,3 +190,42 @@ fn a_number_out_of_range_is_a_compile_error_in_plain_words_at_the_line() {
         assert!(found, "{line} should say “{message}” at {place}\n{}", compiled.said);
     }
 }
+
+#[test]
+fn what_is_no_pixel_format_says_what_to_do_instead() {
+    let source = "
+        use fixel::embedded_graphics::pixelcolor::{BinaryColor, Gray8, Rgb555, Rgb565};
+        use fixel::embedded_graphics::prelude::*;
+        use fixel::{Band, Depth16, NoDepth};
+        pub fn no_pixels() { let _ = Band::<BinaryColor, NoDepth>::new(Size::new(1, 1), &mut [], &mut []); }
+        pub fn no_depths(pixels: &mut [u16]) { let _ = Band::<Rgb565, Rgb565>::new(Size::new(1, 1), pixels, &mut []); }
+        pub fn not_sent(band: &Band<'_, Gray8, Depth16>) { band.dithered::<Rgb555>(); }
+    ";
+    let compiled = compile("no_format", source, &[]);
+    assert!(!compiled.is_good, "it compiles");
+    let errors: Vec<_> = compiled.said.split("\nerror").collect();
+    let expected: [(&str, &[&str]); 3] = [
+        (
+            "lib.rs:5:",
+            &[
+                "`BinaryColor` is not a format that pixels are drawn in",
+                "a band's pixels are `Rgb565`, `Bgr565`, `Rgb666`, `Rgb888`, `Bgr888` or `Gray8`",
+                "for a display of fewer bits (`BinaryColor`, `Gray2`, `Gray4`) draw in `Gray8` and send `band.dithered::<BinaryColor>()`",
+                "pass `&mut display.color_converted()`",
+            ],
+        ),
+        ("lib.rs:6:", &["`Rgb565` is not a format of depths", "depths are `Depth16`, or none, `NoDepth`"]),
+        ("lib.rs:7:", &["a band cannot be sent in `Rgb555`", "implement `Quantize` for its colour type"]),
+    ];
+    for (place, messages) in expected {
+        // A message may be broken into lines.
+        let said = |error: &str, message: &str| {
+            let words: Vec<_> = error.split_whitespace().filter(|word| *word != "|").collect();
+            words.join(" ").contains(message)
+        };
+        let found = errors
+            .iter()
+            .any(|error| error.contains(place) && messages.iter().all(|message| said(error, message)));
+        assert!(found, "{place} should say {messages:#?}\n{}", compiled.said);
+    }
+}

@@ -1,6 +1,9 @@
 //! What the examples share: pictures in, pictures out.
 
-use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+use embedded_graphics::{
+    pixelcolor::{Rgb565, Rgb888},
+    prelude::*,
+};
 use fixel::{Band, DepthFormat, Texture};
 use std::error::Error;
 use std::fs::File;
@@ -108,6 +111,12 @@ impl Rgba {
         let widen = |value: u8, bits: u32| (u32::from(value) * 255 / ((1 << bits) - 1)) as u8;
         let bytes = colors.flat_map(|c| [widen(c.r(), 5), widen(c.g(), 6), widen(c.b(), 5), 255]);
         Self { size, bytes: bytes.collect() }
+    }
+
+    /// The same of 8 bits a channel.
+    #[allow(dead_code, reason = "most examples draw RGB565")]
+    pub fn of_rgb888(size: Size, colors: impl Iterator<Item = Rgb888>) -> Self {
+        Self { size, bytes: colors.flat_map(|c| [c.r(), c.g(), c.b(), 255]).collect() }
     }
 
     /// What a band shows.

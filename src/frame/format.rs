@@ -4,8 +4,9 @@
 //! - Out: its word, which is one pixel in memory.
 //! - Assumes: nothing.
 
+use super::threshold::{Quantize, Threshold};
 use core::marker::PhantomData;
-use embedded_graphics::pixelcolor::{PixelColor, Rgb565, raw::RawU16};
+use embedded_graphics::pixelcolor::{PixelColor, Rgb565, Rgb888, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
 /// How a colour is stored in memory.
@@ -101,6 +102,17 @@ pub trait PixelFormat: 'static {
     #[must_use]
     fn texel(_word: Self::Word) -> u16 {
         0
+    }
+
+    /// A word's colour on a display of few bits.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn quantize<C: Quantize>(word: Self::Word, threshold: Threshold) -> C
+    where
+        Self::Color: Into<Rgb888>,
+    {
+        C::quantize(Self::decode(word).into(), threshold)
     }
 
     /// The word of a grey, whose three channels are all `level`.
@@ -239,7 +251,7 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use embedded_graphics::pixelcolor::{Bgr565, Gray8, Rgb666, Rgb888};
+    use embedded_graphics::pixelcolor::{Bgr565, Gray8, Rgb666};
 
     /// A format of a user, whose words are no RGB565.
     struct Swapped;

@@ -6,6 +6,7 @@
 
 use super::channel::{luma, nearest, products, split};
 use super::format::PixelFormat;
+use super::threshold::{Quantize, Threshold};
 use embedded_graphics::pixelcolor::{Bgr565, Bgr888, Gray8, GrayColor, Rgb666, Rgb888, RgbColor};
 
 /// Formats of red and blue of 0 … `$most` and green of 0 … `$green`: their words from these channels, and back.
@@ -113,7 +114,8 @@ impl PixelFormat for Gray8 {
 
     #[inline]
     fn rgb565(bits: u16) -> u8 {
-        luma::<31, 63>(split(bits))
+        // By the same weights, so that full light changes nothing.
+        Self::lit(bits, [255; 3])
     }
 
     #[inline]
@@ -124,6 +126,11 @@ impl PixelFormat for Gray8 {
     #[inline]
     fn lit(texel: u16, light: [u32; 3]) -> u8 {
         luma::<{ 31 * 255 }, { 63 * 255 }>(products(texel, light))
+    }
+
+    #[inline]
+    fn quantize<C: Quantize>(word: u8, threshold: Threshold) -> C {
+        C::quantize_gray(word, threshold)
     }
 
     #[inline]

@@ -14,6 +14,7 @@ mod format;
 mod formats;
 mod pack;
 mod quantize;
+mod threshold;
 mod window;
 
 pub use background::{Background, Gradient, Picture};
@@ -23,5 +24,6 @@ pub use blend::BlendFormat;
 pub use depth::{Depth16, DepthFormat, NoDepth};
 pub use format::{BigEndian, PixelFormat};
 pub use pack::PackError;
-pub use quantize::{Quantize, Quantized, QuantizedColors, Threshold};
+pub use quantize::{Quantized, QuantizedColors};
+pub use threshold::{Quantize, Threshold};
 pub(crate) use window::{Window, first_center};

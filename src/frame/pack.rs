@@ -5,7 +5,8 @@
 //! - Assumes: nothing; a buffer that is too short is an error.
 
 use super::format::PixelFormat;
-use super::quantize::{Quantize, Quantized, quantize};
+use super::quantize::Quantized;
+use super::threshold::{Quantize, Threshold};
 use core::fmt;
 use embedded_graphics::pixelcolor::{BinaryColor, IntoStorage, Rgb888};
 use embedded_graphics::prelude::RawData;
@@ -52,7 +53,6 @@ where
     {
         let bits = <C::Raw as RawData>::BITS_PER_PIXEL;
         const { assert!(8 % <C::Raw as RawData>::BITS_PER_PIXEL == 0, "a pixel is packed in 1, 2, 4 or 8 bits") };
-        let in_byte = 8 / bits;
         let bytes_a_row = (self.width * bits).div_ceil(8);
         let bytes = part(bytes, bytes_a_row * self.height)?;
         let mut rest = &mut *bytes;
@@ -60,20 +60,38 @@ where
             let Some((line, others)) = rest.split_at_mut_checked(bytes_a_row) else {
                 break;
             };
-            let mut column = 0;
-            for (byte, pixels) in line.iter_mut().zip(row.chunks(in_byte)) {
-                let mut packed = 0;
-                for (i, word) in pixels.iter().enumerate() {
-                    let color: C = quantize::<F, C>(*word, thresholds[(column + i) & 7]);
-                    let at = if LSB_FIRST { i } else { in_byte - 1 - i };
-                    packed |= color.into_storage() << (at * bits);
-                }
-                *byte = packed;
-                column += in_byte;
+            // Eight pixels are as many bytes as a pixel has bits.
+            let (eights, last) = row.as_chunks::<8>();
+            let mut line = line.chunks_mut(bits);
+            for (pixels, bytes) in eights.iter().zip(&mut line) {
+                Self::pack_eight::<LSB_FIRST>(pixels, &thresholds, bytes);
+            }
+            if let (false, Some(bytes)) = (last.is_empty(), line.next()) {
+                Self::pack_eight::<LSB_FIRST>(last, &thresholds, bytes);
             }
             rest = others;
         }
         Ok(bytes)
+    }
+
+    /// Packs eight pixels, or fewer.
+    #[inline(always)]
+    fn pack_eight<const LSB_FIRST: bool>(pixels: &[F::Word], thresholds: &[u8; 8], bytes: &mut [u8])
+    where
+        C: IntoStorage<Storage = u8>,
+    {
+        let bits = <C::Raw as RawData>::BITS_PER_PIXEL;
+        let in_byte = 8 / bits;
+        let pixels = pixels.chunks(in_byte).zip(thresholds.chunks(in_byte));
+        for (byte, (pixels, thresholds)) in bytes.iter_mut().zip(pixels) {
+            let mut packed = 0;
+            for (i, (word, threshold)) in pixels.iter().zip(thresholds).enumerate() {
+                let color: C = F::quantize(*word, Threshold(*threshold));
+                let at = if LSB_FIRST { i } else { in_byte - 1 - i };
+                packed |= color.into_storage() << (at * bits);
+            }
+            *byte = packed;
+        }
     }
 }
 
@@ -101,10 +119,17 @@ where
         let mut rest = &mut *bytes;
         let mut bit = 0;
         for (row, thresholds) in self.rows() {
-            for (column, (byte, word)) in rest.iter_mut().zip(row).enumerate() {
-                let color = quantize::<F, BinaryColor>(*word, thresholds[column & 7]);
-                *byte |= u8::from(color.is_on()) << bit;
-            }
+            // Eight at a time, so that each has its threshold at a place that is known.
+            let (words, last_words) = row.as_chunks::<8>();
+            let (bytes, last_bytes) = rest.get_mut(..self.width).unwrap_or_default().as_chunks_mut::<8>();
+            let light = |bytes: &mut [u8], words: &[F::Word]| {
+                for ((byte, word), threshold) in bytes.iter_mut().zip(words).zip(&thresholds) {
+                    let color: BinaryColor = F::quantize(*word, Threshold(*threshold));
+                    *byte |= u8::from(color.is_on()) << bit;
+                }
+            };
+            bytes.iter_mut().zip(words).for_each(|(bytes, words)| light(bytes, words));
+            light(last_bytes, last_words);
             bit += 1;
             if bit == PAGE {
                 (rest, bit) = (rest.get_mut(self.width..).unwrap_or_default(), 0);
