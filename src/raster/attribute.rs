@@ -106,17 +106,18 @@ impl Attribute {
         }
     }
 
-    /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over: one that is the same at all
-    /// corners stays what it is. If it may be packed, which takes an inset of more than 2, it is in the middle of its texel.
+    /// Where there is no room for an inset in a range, a texture coordinate is its middle, all over.
     #[cold]
     #[inline(never)]
     pub(super) fn keep_amid(&mut self, inset: u32) {
-        let texel = 0x10000 >> self.scale_log2;
-        self.least = self.least.wrapping_add_unsigned(self.range >> 1);
-        if inset > 2 {
-            self.least = (self.least & -texel) + texel / 2;
-        }
-        (self.low, self.range) = (0, 0);
+        (self.least, self.low, self.range) = (self.amid(inset), 0, 0);
+    }
+
+    /// The middle of the range: one that is the same at all corners stays what it is. If it may be packed, which takes an inset of more
+    /// than 2, it is in the middle of its texel.
+    fn amid(&self, inset: u32) -> i32 {
+        let (texel, middle) = (0x10000 >> self.scale_log2, self.least.wrapping_add_unsigned(self.range >> 1));
+        if inset > 2 { (middle & -texel) + texel / 2 } else { middle }
     }
 
     /// Sets what u may be, of a straight triangle of which all else is set: the least, and how much more.
@@ -208,7 +209,7 @@ impl Attribute {
         if first <= self.range && last <= self.range {
             return (self.least.wrapping_add_unsigned(first), step);
         }
-        self.along_border(first as i32, last as i32, steps)
+        along_border(self.least, self.range, [first as i32, last as i32], steps)
     }
 
     /// Likewise, of a bent triangle: inside the range by as much as carries may move it, if it is packed.
@@ -227,18 +228,23 @@ impl Attribute {
     #[cold]
     #[inline(never)]
     fn along_border_inside(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let mut inside = *self;
-        inside.keep_inside(self.bend[2] as u32, true);
-        let moved = inside.least.wrapping_sub(self.least);
-        inside.along_border(first.wrapping_sub(moved), last.wrapping_sub(moved), steps)
+        let inset = self.bend[2] as u32;
+        let (least, range) = if self.range < 2 * inset {
+            (self.amid(inset), 0)
+        } else {
+            (self.least.wrapping_add_unsigned(inset), self.range - 2 * inset)
+        };
+        let moved = least.wrapping_sub(self.least);
+        along_border(least, range, [first.wrapping_sub(moved), last.wrapping_sub(moved)], steps)
     }
+}
 
-    #[cold]
-    #[inline(never)]
-    fn along_border(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let [first, last] = [first, last].map(|above| above.clamp(0, self.range as i32));
-        (self.least.wrapping_add(first), step_of(last - first, inverse(steps.max(1) as usize)))
-    }
+/// A straight line that rounding takes out of the range at one end: it is held there.
+#[cold]
+#[inline(never)]
+fn along_border(least: i32, range: u32, ends: [i32; 2], steps: i32) -> (i32, i32) {
+    let [first, last] = ends.map(|above| above.clamp(0, range as i32));
+    (least.wrapping_add(first), step_of(last - first, inverse(steps.max(1) as usize)))
 }
 
 /// 1/n with 31 fraction bits, rounded down.

@@ -5,10 +5,12 @@
 //! - Assumes: what [`small`](super::small) has asked of it.
 
 use super::attribute::Attribute;
+use super::gradients::Gradients;
+use super::needs::{Needs, SmallTriangle};
 use super::plane::Plane;
-use super::small::Gradients;
+use super::scaling::Scaling;
 use super::straight::{Bend, Straight};
-use super::triangle::{Needs, STRAIGHT, TriangleSetup};
+use super::triangle::{STRAIGHT, TriangleSetup};
 use crate::geometry::{ScreenVertex, position};
 use crate::num::{mul_16, mul_16_signed};
 
@@ -16,13 +18,8 @@ impl TriangleSetup {
     /// Sets the attributes of a small triangle as linear on the screen, to be held: from the gradients, and q at the corners. False if the
     /// general way has to.
     #[inline(never)]
-    pub(super) fn set_held(
-        &mut self,
-        vertices: &[&ScreenVertex; 3],
-        needs: &Needs,
-        gradients: &Gradients,
-        q: [u32; 3],
-    ) -> bool {
+    pub(super) fn set_held(&mut self, small: &SmallTriangle<'_>) -> bool {
+        let &SmallTriangle { vertices, needs, ref gradients, q, .. } = small;
         let (most, least) = (q[0].max(q[1]).max(q[2]), q[0].min(q[1]).min(q[2]));
         let is_level = needs.is_exactly_straight(least, most);
         if let Straight::Below(limit) = needs.straight
@@ -31,13 +28,16 @@ impl TriangleSetup {
         {
             return false;
         }
+        if needs.scale != 0 && !needs.are_narrow(vertices) {
+            return false;
+        }
         self.hold(vertices);
         self.is_held = true;
         if needs.reads_color() {
-            self.set_gray(vertices, needs);
+            self.set_gray(vertices, needs.gray);
         }
-        let (needs, attributes) = (needs.scaled(), &mut self.attributes);
-        let are_set = needs.each_attribute(vertices, self.gray, |i, at, _| {
+        let (scaling, attributes) = (needs.scaled_at_once(), &mut self.attributes);
+        let are_set = needs.each_attribute(&scaling, vertices, self.gray, |i, at, _| {
             let Some(attribute) = attributes.get_mut(i) else {
                 return false;
             };
@@ -50,12 +50,8 @@ impl TriangleSetup {
             attribute.bend = [0; 3];
             true
         });
-        if are_set && needs.reads_uv() {
-            if is_level {
-                self.lean(vertices, &needs, 2, i32::MAX);
-            } else {
-                self.keep_small_inside(&needs);
-            }
+        if are_set && let Some(uv) = &needs.code.uv {
+            (uv.complete_held)(self, small, &scaling, is_level);
         }
         // Held planes begin at corner 0's pixel.
         let [x, y] = gradients.pixel;
@@ -63,6 +59,16 @@ impl TriangleSetup {
             plane.origin = plane.at(x, y);
         }
         are_set
+    }
+
+    /// Completes u and v: [`UvCode::complete_held`](super::needs::UvCode).
+    #[inline(never)]
+    pub(super) fn complete_held_uv(&mut self, small: &SmallTriangle<'_>, scaling: &Scaling, is_exact: bool) {
+        if is_exact {
+            self.lean(small.vertices, scaling, 2, i32::MAX);
+        } else {
+            self.keep_small_inside(small.needs);
+        }
     }
 
     /// Begins a triangle whose rows are held.
@@ -74,14 +80,8 @@ impl TriangleSetup {
     /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
     /// enough, or if one differs by 2²⁶ or more: V takes up to a quarter of that besides.
     #[inline(never)]
-    pub(super) fn bend(
-        &mut self,
-        vertices: &[&ScreenVertex; 3],
-        needs: &Needs,
-        gradients: &Gradients,
-        q: [u32; 3],
-        limit: u32,
-    ) -> bool {
+    pub(super) fn bend(&mut self, small: &SmallTriangle<'_>, limit: u32) -> bool {
+        let &SmallTriangle { vertices, needs, ref gradients, q, .. } = small;
         let Some(bend) = Bend::new(&gradients.edges, q) else {
             return false;
         };
@@ -112,7 +112,7 @@ impl TriangleSetup {
     }
 
     /// Limits u and v of a small triangle that does not lean: u below its greatest value, v to its inset. Where u repeats within four
-    /// pixels planes are evaluated at every pixel. `needs` have all of the scale before planes are made.
+    /// pixels planes are evaluated at every pixel.
     #[inline(never)]
     fn keep_small_inside(&mut self, needs: &Needs) {
         if needs.packing.is_steep(self.attributes[0].plane.steps[0]) {

@@ -14,12 +14,13 @@
 //! All triangles keep u and v in [min, max) of their corners: the range ends 2⁻¹⁶ below the greatest value. And v, which
 //! carries of u move where both are packed, keeps as far from both ends as these can take it.
 
-use super::triangle::{Needs, TriangleSetup, edges};
+use super::scaling::Scaling;
+use super::triangle::{TriangleSetup, edges};
 use crate::geometry::ScreenVertex;
 use crate::num::wide;
 
 impl TriangleSetup {
-    /// Makes u and v of a triangle that is not small lean, or limits them. `fraction_bits` are those of the slopes in
+    /// [`UvCode::complete`](super::needs::UvCode): makes u and v of a triangle that is not small lean, or limits them. `fraction_bits` are those of the slopes in
     /// [`setup`](super::setup), if u and v are exactly straight.
     ///
     /// Where they are not, u may repeat within four pixels somewhere: so twice the inset.
@@ -27,15 +28,15 @@ impl TriangleSetup {
     pub(super) fn settle(
         &mut self,
         vertices: &[&ScreenVertex; 3],
-        needs: &Needs,
+        scaling: &Scaling,
         fraction_bits: Option<i32>,
     ) {
         if let Some(fraction_bits) = fraction_bits {
-            return self.lean_large(vertices, needs, fraction_bits);
+            return self.lean_large(vertices, scaling, fraction_bits);
         }
         let [u, v, ..] = &mut self.attributes;
         u.open_end();
-        v.keep_inside(2 * u32::from(needs.packings[1].inset), self.straight);
+        v.keep_inside(2 * u32::from(scaling.packing(1).inset), self.straight);
     }
 
     /// As [`TriangleSetup::lean`], of one that is not small: finds the bound of the plane's error. `bits` are the fraction
@@ -45,22 +46,22 @@ impl TriangleSetup {
     /// step, counted from the middle of what is on the screen, and 1.5 units of the slope, 1.5 · 2^−`bits`, counted from
     /// corner 0.
     #[cold]
-    fn lean_large(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs, bits: i32) {
+    fn lean_large(&mut self, vertices: &[&ScreenVertex; 3], scaling: &Scaling, bits: i32) {
         let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
         if self.sliver {
             // Evaluated by weights where a run begins: off by 4 units at most (24 are allowed). Then half a unit per column.
-            self.lean(vertices, needs, 0, 24 + (width >> 1));
+            self.lean(vertices, scaling, 0, 24 + (width >> 1));
         } else if bits < 3 {
             // Slopes of so few fraction bits have triangles within 1024 px of corner 0, or else they would be slivers. So the
             // error at the corners, which `lean` finds, is a good bound, and none within the screen is needed. A step may be
             // off by a unit of the slope or more, which is 2^−`bits` units of the step: `slack` is 5/4 of that, at least 1.
-            self.lean(vertices, needs, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
+            self.lean(vertices, scaling, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
         } else {
             let all = (0..2).fold(2, |all, axis| {
                 let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
                 all + a.max(b).max(c) - a.min(b).min(c)
             });
-            self.lean(vertices, needs, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
+            self.lean(vertices, scaling, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
         }
     }
 
@@ -79,12 +80,11 @@ impl TriangleSetup {
     /// larger error.
     #[cold]
     #[inline(never)]
-    pub(super) fn lean(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs, slack: u32, most: i32) {
+    pub(super) fn lean(&mut self, vertices: &[&ScreenVertex; 3], scaling: &Scaling, slack: u32, most: i32) {
         self.leans = true;
-        let u = vertices.map(|vertex| vertex.u.to_bits() << (needs.finer[0] & 31));
-        let v = vertices.map(|vertex| vertex.v.to_bits() << (needs.finer[1] & 31));
-        let carries = self.lean_by(0, &u, needs, [slack, 0], most);
-        self.lean_by(1, &v, needs, [slack, carries], most);
+        let [u, v] = [0, 1].map(|i| scaling.uv(vertices, i));
+        let carries = self.lean_by(0, &u, scaling, [slack, 0], most);
+        self.lean_by(1, &v, scaling, [slack, carries], most);
     }
 
     /// Makes attribute `i`, 0 for u or 1 for v, lean. `at` are its values at the corners, I16F16, and `carries` the units by
@@ -94,7 +94,7 @@ impl TriangleSetup {
         &mut self,
         i: usize,
         at: &[i32; 3],
-        needs: &Needs,
+        scaling: &Scaling,
         [slack, carries]: [u32; 2],
         most: i32,
     ) -> u32 {
@@ -104,7 +104,7 @@ impl TriangleSetup {
         if direction == 0 {
             // Constant. v is put in the middle of its texel if carries can move it.
             if i > 0 {
-                attribute.keep_inside(needs.packings[1].inset.into(), true);
+                attribute.keep_inside(scaling.packing(1).inset.into(), true);
             }
             return 0;
         }
@@ -121,7 +121,7 @@ impl TriangleSetup {
             }
             behind = behind.min(1 + (if direction > 0 { -errors[0] } else { errors[1] } >> 4));
         }
-        let packing = &needs.packings[i];
+        let packing = scaling.packing(i);
         let step = self.step(&plane).unsigned_abs();
         let [first, last] = self.extent(0);
         let unit = packing.unit();
@@ -131,8 +131,8 @@ impl TriangleSetup {
         let room = (carries * unit) as i32;
         behind += room + (unit + steps * (step & (unit - 1))) as i32;
         plane.origin = plane.origin.wrapping_add_signed(direction * behind);
-        // In I16F16, before `scale_log2` makes 1.0 of it.
-        let texel = 0x10000 >> needs.scale_log2[i & 1];
+        // In I16F16, before the rest of the scale makes 1.0 of it.
+        let texel = 0x10000 >> scaling.rest(i);
         let attribute = &mut self.attributes[i];
         let mut least = attribute.least;
         let mut greatest = least.wrapping_add_unsigned(attribute.range).wrapping_sub(1);

@@ -4,9 +4,10 @@
 //! - Out: its rows, and its planes.
 //! - Assumes: the corners lie in the guard band.
 
+use super::needs::Needs;
 use super::rows::Rows;
 use super::spans::SmallEdges;
-use super::triangle::{Needs, TriangleSetup};
+use super::triangle::TriangleSetup;
 use crate::frame::Window;
 use crate::geometry::{Oriented, ScreenVertex, position};
 
@@ -26,52 +27,62 @@ impl Prepared {
     #[inline]
     pub(crate) fn set(&mut self, triangle: &Oriented<'_>, window: &Window, needs: &Needs) -> bool {
         let [a, b, c] = triangle.vertices;
-        if a.y <= b.y && a.y <= c.y {
-            self.set_from(a, b, c, triangle.area, window, needs)
+        let small = if a.y <= b.y && a.y <= c.y {
+            self.set_small([a, b, c], triangle.area, window, needs)
         } else if b.y <= c.y {
-            self.set_from(b, c, a, triangle.area, window, needs)
+            self.set_small([b, c, a], triangle.area, window, needs)
         } else {
-            self.set_from(c, a, b, triangle.area, window, needs)
+            self.set_small([c, a, b], triangle.area, window, needs)
+        };
+        match small {
+            Small::Set => true,
+            Small::Hidden => false,
+            // From here, so that what a small triangle takes is not on the stack.
+            other => self.set_any(triangle, window, needs, matches!(other, Small::Not)),
         }
     }
 
-    /// From the uppermost vertex on.
+    /// Prepares a small triangle, from its uppermost vertex on.
     #[inline(never)]
-    fn set_from(
+    fn set_small(
         &mut self,
-        a: &ScreenVertex,
-        b: &ScreenVertex,
-        c: &ScreenVertex,
+        vertices: [&ScreenVertex; 3],
         area: u32,
         window: &Window,
         needs: &Needs,
-    ) -> bool {
-        let vertices = [a, b, c];
+    ) -> Small {
         let (Some(edges), Some(spans)) = (SmallEdges::of(vertices), self.rows.short()) else {
-            return self.set_large(&Oriented { vertices, area }, window, needs);
+            return Small::Not;
         };
         if !spans.start(&edges, window) {
-            return false;
+            Small::Hidden
+        } else if (needs.code.small)(&mut self.setup, &vertices, &edges, area, needs) {
+            Small::Set
+        } else {
+            Small::Rows
         }
-        if !self.setup.set_small(&vertices, &edges, area, needs) {
-            self.set_any(&Oriented { vertices, area }, needs);
-        }
-        true
     }
 
-    /// A triangle that is not small.
+    /// Prepares a triangle that is not small, or whose rows alone are.
     #[cold]
     #[inline(never)]
-    fn set_large(&mut self, triangle: &Oriented<'_>, window: &Window, needs: &Needs) -> bool {
-        let is_seen = self.rows.start_long(&triangle.vertices.map(position), window);
-        if is_seen {
-            self.set_any(triangle, needs);
+    fn set_any(&mut self, triangle: &Oriented<'_>, window: &Window, needs: &Needs, is_large: bool) -> bool {
+        if is_large && !self.rows.start_long(&triangle.vertices.map(position), window) {
+            return false;
         }
-        is_seen
+        (needs.code.any)(&mut self.setup, &triangle.nearest_first(), needs);
+        true
     }
+}
 
-    #[inline(never)]
-    fn set_any(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        self.setup.set(&triangle.nearest_first(), needs);
-    }
+/// What the set-up for small triangles made of one.
+enum Small {
+    /// It is set up.
+    Set,
+    /// It has no pixels in the window.
+    Hidden,
+    /// Its rows are; its planes have to be set by the general way.
+    Rows,
+    /// It is not small.
+    Not,
 }

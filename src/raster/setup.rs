@@ -50,151 +50,36 @@
 //! slower, rare, and out of line.
 
 use super::attribute::Attribute;
-use super::plane::Plane;
+use super::needs::Needs;
+use super::scaling::Scaling;
+use super::slopes::Slopes;
 use super::straight::{Bend, Straight};
-use super::triangle::{Needs, TriangleSetup, edges};
-use crate::geometry::{Inputs, Oriented, position};
+use super::triangle::{TriangleSetup, edges};
+use crate::geometry::{Oriented, position};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, normalise, shift_round_short, wide};
-
-/// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
-struct Slopes {
-    /// Whether planes hold the values at the corners: see [`TriangleSetup::sliver`].
-    sliver: bool,
-    /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
-    of_weights: [[i32; 2]; 2],
-    fraction_bits: i32,
-    /// Corner 0's pixel.
-    pixel: [i32; 2],
-    /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
-    to_center: [i32; 2],
-    /// From that pixel to the middle of what is within the screen.
-    to_middle: [i32; 2],
-    /// Columns and rows of what is within the screen, added up.
-    size: u32,
-}
-
-impl Slopes {
-    /// Finds out whether it is a sliver, too. `area` is twice the area in 1/256 px².
-    ///
-    /// Not inlined: what it takes is not on the stack while planes are set.
-    #[inline(never)]
-    fn new(setup: &TriangleSetup, area: u32) -> Self {
-        let (edges, a) = (edges(&setup.corners), setup.corners[0]);
-        let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
-        let (height, width) = (spread(edges[0]), spread(edges[1]));
-        // The largest difference to 30 bits, times 1/area.
-        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
-        let shift = normalise(largest).1 - 2;
-        let Reciprocal { mantissa, zeros } = setup.area;
-        // (e·2^shift · mantissa) / 2³¹, by halves of the mantissa: e is below 2¹⁵, and so `shift` at least 15.
-        let weight =
-            |e: i32| ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift));
-        let pixel = a.map(|at| at >> 4);
-        let extents = [0, 1].map(|axis| setup.extent(axis));
-        Self {
-            // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of
-            // 2^−`fraction_bits` a pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
-            sliver: height.max(width) * 16 > area || 2 * shift < 23 + zeros,
-            of_weights: edges.map(|edge| edge.map(weight)),
-            // A weight · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
-            fraction_bits: shift as i32 - 5 - zeros as i32,
-            pixel,
-            to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
-            to_middle: [0, 1].map(|axis| ((extents[axis][0] + extents[axis][1]) >> 1) - pixel[axis]),
-            size: extents.iter().map(|[first, last]| last - first).sum::<i32>() as u32,
-        }
-    }
-
-    /// Completes a plane whose `origin` holds the value at corner 0, from the rise to corners 1 and 2.
-    #[inline(never)]
-    fn set_plane(&self, plane: &mut Plane, rise: [i32; 2]) {
-        if self.sliver {
-            plane.steps = rise;
-            return;
-        }
-        for axis in 0..2 {
-            let [b, c] = self.of_weights[axis];
-            let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
-            let bits = self.fraction_bits;
-            let (step, rest) = if bits > 0 {
-                let step = ((slope >> (bits - 1)) + 1) >> 1;
-                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
-                let rest = slope.wrapping_sub(step << bits);
-                (
-                    step,
-                    if bits > 12 {
-                        ((rest >> (bits - 12)) * self.to_middle[axis]) >> 12
-                    } else {
-                        (rest * self.to_middle[axis]) >> bits
-                    },
-                )
-            } else {
-                (slope << -bits, 0)
-            };
-            plane.steps[axis] = step;
-            plane.origin = plane
-                .origin
-                .wrapping_add_signed((step >> 4) * self.to_center[axis])
-                .wrapping_sub((self.pixel[axis].wrapping_mul(step)) as u32)
-                .wrapping_add_signed(rest);
-        }
-    }
-
-    /// Sets a plane from the values at the corners.
-    #[inline]
-    fn set_plane_of(&self, plane: &mut Plane, at: [u32; 3]) {
-        plane.origin = at[0];
-        self.set_plane(plane, [1, 2].map(|i| at[i].wrapping_sub(at[0]) as i32));
-    }
-}
+use crate::num::{normalise, shift_round_short, wide};
 
 /// What all attributes of a bent triangle have in common: for set-up only.
-struct Bent<'a> {
+struct BentTriangle<'a> {
+    needs: &'a Needs,
+    scaling: &'a Scaling,
     slopes: &'a Slopes,
-    /// At the corners.
+    /// At the corners, scaled so that the nearest has 31 bits.
     q: [u32; 3],
     /// 1/(the step of q along a row), from that normalised.
     reciprocal: i32,
-    needs: &'a Needs,
 }
 
 impl TriangleSetup {
-    /// Sets all planes of any triangle, the nearest vertex of which is first.
+    /// Sets the plane of depth of any triangle, the nearest vertex of which is first, and those of attributes if any is read:
+    /// [`InputCode::any`](super::needs::InputCode).
     #[inline(never)]
-    pub(crate) fn set(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
+    pub(super) fn set<const READS: bool>(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         self.corners = triangle.vertices.map(position);
-        (self.is_small, self.sliver, self.leans) = (false, false, false);
-        if needs.inputs == Inputs::None && !needs.depth {
-            self.straight = true;
+        (self.is_small, self.sliver, self.leans, self.straight) = (false, false, false, true);
+        if !READS && !needs.depth {
             return;
         }
-        if needs.reads_color() {
-            self.set_gray(&triangle.vertices, needs);
-        }
-        if needs.scale != 0 && needs.packings[0].inset > 0 {
-            return self.set_scaled(triangle, needs);
-        }
-        self.set_planes(triangle, needs);
-    }
-
-    /// Where texture coordinates are scaled, as much of the scale as there is room for goes into planes: for their rounding is
-    /// multiplied by the rest of it. What is beyond ±32768 wraps, as it would if it were scaled at the end.
-    #[cold]
-    #[inline(never)]
-    fn set_scaled(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let [a, b, c] = triangle.vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        let finer = [0, 1].map(|i| {
-            let size =
-                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
-            // Differences stay below 2²⁹.
-            size.leading_zeros().saturating_sub(3).min(needs.scale)
-        });
-        self.set_planes(triangle, &needs.finer(finer));
-    }
-
-    #[inline(never)]
-    fn set_planes(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         self.area = Reciprocal::precise(triangle.area);
         let mut slopes = Slopes::new(self, triangle.area);
         let near_w = triangle.vertices.map(|vertex| vertex.q.to_bits());
@@ -212,36 +97,46 @@ impl TriangleSetup {
             // for that.
             slopes.set_plane_of(&mut self.z, near_w.map(|q| q.clamp(2048, (1 << 31) - 2048)));
         }
-        if needs.inputs == Inputs::None {
-            self.straight = true;
+        if !READS {
             return;
+        }
+        let vertices = &triangle.vertices;
+        let scaling = match &needs.code.uv {
+            Some(uv) if needs.scale != 0 => (uv.scaling)(needs, vertices),
+            _ => needs.scaled_at_the_end(),
+        };
+        if needs.reads_color() {
+            self.set_gray(vertices, needs.gray);
         }
         let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
             Straight::Below(limit) if !is_exact => self.is_straight(&q, limit),
             _ => true,
         };
-        if self.straight {
-            needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
+        let reciprocal = if self.straight {
+            0
+        } else {
+            slopes.set_plane_of(&mut self.q, q);
+            self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
+            self.set_q_step(needs.every_pixel)
+        };
+        let bent = BentTriangle { needs, scaling: &scaling, slopes: &slopes, q, reciprocal };
+        needs.each_attribute(&scaling, vertices, self.gray, |i, at, scale_log2| {
+            let rise = self.attributes[i].set_range(at, scale_log2);
+            if self.straight {
                 let attribute = &mut self.attributes[i];
-                let rise = attribute.set_range(at, scale_log2);
                 attribute.plane.origin = attribute.origin();
                 slopes.set_plane(&mut attribute.plane, rise);
-                true
-            });
-            if needs.packings[0].inset > 0 {
-                self.settle(&triangle.vertices, needs, is_exact.then_some(slopes.fraction_bits));
+            } else {
+                self.set_bent_attribute(i, rise, &bent);
             }
-            return;
-        }
-        slopes.set_plane_of(&mut self.q, q);
-        self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
-        let reciprocal = self.set_q_step(needs.every_pixel);
-        let bent = Bent { slopes: &slopes, q, reciprocal, needs };
-        needs.each_attribute(&triangle.vertices, self.gray, |i, at, scale_log2| {
-            self.set_bent_attribute(i, &at, scale_log2, &bent);
             true
         });
+        if self.straight
+            && let Some(uv) = &needs.code.uv
+        {
+            (uv.complete)(self, vertices, &scaling, is_exact.then_some(slopes.fraction_bits));
+        }
     }
 
     /// Whether linear interpolation will do for all attributes, from q at the corners.
@@ -270,15 +165,14 @@ impl TriangleSetup {
         (units * (greatest >> 16)) >> 12 >= self.q_min >> 16
     }
 
-    /// Sets an attribute of a bent triangle from its I16F16 values at the corners (within ±2²⁹).
-    #[inline]
-    fn set_bent_attribute(&mut self, i: usize, at: &[i32; 3], scale_log2: u32, bent: &Bent<'_>) {
+    /// Sets an attribute of a bent triangle, whose range is set, from how much it rises from corner 0 to 1 and 2, I16F16.
+    #[inline(never)]
+    fn set_bent_attribute(&mut self, i: usize, rise: [i32; 2], bent: &BentTriangle<'_>) {
         let Some(attribute) = self.attributes.get_mut(i) else {
             return;
         };
-        let Bent { slopes, q, reciprocal, needs } = bent;
-        let rise = attribute.set_range(*at, scale_log2);
-        let rise = contract(attribute, rise, i, needs, self.is_extreme);
+        let &BentTriangle { needs, scaling, slopes, q, reciprocal } = bent;
+        let rise = contract(attribute, rise, i, scaling, self.is_extreme);
         attribute.plane.origin = 0;
         if self.sliver && needs.every_pixel {
             // For `resolve_in_sliver`.
@@ -292,9 +186,9 @@ impl TriangleSetup {
         slopes
             .set_plane(&mut attribute.plane, products.map(|product| shift_round_short(product, 32 - zeros)));
         // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
-        let inset = u32::from(needs.packings[1].inset);
+        let inset = u32::from(scaling.packing(1).inset);
         let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
-        attribute.set_horizon(self.q_rises, self.q_step_zeros, *reciprocal, inset);
+        attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
     }
 }
 
@@ -312,10 +206,10 @@ fn contract(
     attribute: &mut Attribute,
     rise: [i32; 2],
     i: usize,
-    needs: &Needs,
+    scaling: &Scaling,
     is_extreme: bool,
 ) -> [i32; 2] {
-    let packing = &needs.packings[i & 1];
+    let packing = scaling.packing(i);
     let (least, most_shift) = if is_extreme { (3, 31) } else { (7, 15) };
     let log2 = if i < 2 { packing.contraction_log2().max(least) } else { least };
     if attribute.range >> log2 > 1 {

@@ -1,10 +1,8 @@
 //! The arrow out of set-up: a triangle with all that its rows and pixels need, computed once.
 
 use super::attribute::Attribute;
-use super::packing::Packing;
 use super::plane::Plane;
-use super::straight::Straight;
-use crate::geometry::{Inputs, ScreenVertex, is_gray};
+use crate::geometry::{ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
 use crate::num::{mul_round, normalise, shift_round, wide};
 
@@ -60,96 +58,6 @@ pub(crate) struct TriangleSetup {
 
 const _: () = assert!(size_of::<TriangleSetup>() <= 316);
 
-/// What a shader wants of a triangle.
-pub(crate) struct Needs {
-    pub(crate) inputs: Inputs,
-    pub(crate) straight: Straight,
-    /// Whether perspective is exact at every pixel.
-    pub(crate) every_pixel: bool,
-    /// u and v are multiplied by 2^this, 0 … 8.
-    pub(crate) scale: u32,
-    /// Of that, as much before planes are made of them (see [`TriangleSetup::set`]), and the rest at the end.
-    pub(crate) finer: [u32; 2],
-    pub(crate) scale_log2: [u32; 2],
-    /// How u and v are packed, before they are scaled.
-    pub(crate) packings: [Packing; 2],
-    /// How they are packed with all of the scale, as small triangles have it.
-    pub(crate) packing: Packing,
-    /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
-    pub(crate) margins: [u8; 2],
-    /// How much a colour may be off by, in levels of 1/255: a step of the format's finest channel.
-    pub(crate) color_step: u32,
-    /// Whether depth is tested.
-    pub(crate) depth: bool,
-    /// Whether all colours are known to be grey.
-    pub(crate) gray: bool,
-}
-
-impl Needs {
-    /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
-    #[inline]
-    pub(crate) fn is_exactly_straight(&self, least: u32, most: u32) -> bool {
-        least == most || matches!(self.straight, Straight::Always)
-    }
-
-    /// Whether u and v are read.
-    #[inline]
-    pub(crate) fn reads_uv(&self) -> bool {
-        matches!(self.inputs, Inputs::Uv | Inputs::UvColor)
-    }
-
-    /// Whether the colour is read.
-    #[inline]
-    pub(crate) fn reads_color(&self) -> bool {
-        matches!(self.inputs, Inputs::Color | Inputs::UvColor)
-    }
-
-    /// u or v of a vertex, I16F16, with all of the scale. What is beyond ±32768 wraps.
-    #[inline(always)]
-    pub(super) fn scaled_uv(&self, vertex: &ScreenVertex, i: usize) -> i32 {
-        (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (self.scale & 31)
-    }
-
-    /// The same with so much of the scale before planes are made.
-    pub(super) fn finer(&self, finer: [u32; 2]) -> Self {
-        let scale_log2 = finer.map(|finer| self.scale - finer);
-        Self { finer, scale_log2, packings: [0, 1].map(|i| self.packings[i].finer(finer[i])), ..*self }
-    }
-
-    /// The same with all of the scale before planes are made.
-    #[inline(never)]
-    pub(super) fn scaled(&self) -> Self {
-        self.finer([self.scale; 2])
-    }
-
-    /// Hands on the attributes in use, with the corners' values in I16F16 and the scale's log₂, until one returns false: u and
-    /// v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
-    #[inline]
-    pub(crate) fn each_attribute(
-        &self,
-        vertices: &[&ScreenVertex; 3],
-        gray: bool,
-        mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
-    ) -> bool {
-        let first = if self.reads_uv() { 0 } else { 2 };
-        let end = if !self.reads_color() {
-            2
-        } else if gray {
-            3
-        } else {
-            5
-        };
-        (first..end).all(|i| {
-            let at = |vertex: &ScreenVertex| match i {
-                0 => vertex.u.to_bits() << (self.finer[0] & 31),
-                1 => vertex.v.to_bits() << (self.finer[1] & 31),
-                _ => i32::from(vertex.color[i - 2].to_bits()) << 8,
-            };
-            set(i - first, vertices.map(at), if i < 2 { self.scale_log2[i] } else { 0 })
-        })
-    }
-}
-
 impl TriangleSetup {
     /// Of no triangle. (One is used for all triangles of a draw: setting it to zero takes 240 cycles.)
     pub(crate) fn new() -> Self {
@@ -176,10 +84,10 @@ impl TriangleSetup {
         }
     }
 
-    /// Finds out whether all colours are grey.
+    /// Finds out whether all colours are grey, if that is not known.
     #[inline]
-    pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], needs: &Needs) {
-        self.gray = needs.gray || vertices.iter().all(|vertex| is_gray(vertex.color));
+    pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], is_known: bool) {
+        self.gray = is_known || vertices.iter().all(|vertex| is_gray(vertex.color));
     }
 
     /// Whether it is small and may be drawn at one go.

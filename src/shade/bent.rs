@@ -63,11 +63,11 @@ impl Perspective<'_> {
     #[inline(never)]
     fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
-        if matches!(self.units.form, Form::Exact) {
+        if let Some(resolve) = self.units.in_sliver {
             if steps > 0 {
                 return Way::None;
             }
-            self.set_pixel(&|attribute| setup.resolve_in_sliver(attribute, x, y));
+            self.set_pixel(&|attribute| resolve(setup, attribute, x, y));
             return Way::Straight;
         }
         let rises = setup.q_rises;

@@ -37,6 +37,26 @@ impl<'f, W> DrawRun<W> for Filled<'_, 'f, W> {
     }
 }
 
+/// One word everywhere: a program that draws nothing else links no perspective.
+struct Even<W>(W);
+
+impl<W: Copy> DrawRun<W> for Even<W> {
+    type Again<'r>
+        = Self
+    where
+        W: 'r;
+
+    #[inline(always)]
+    fn draw_run(&mut self, _: i32, _: i32, pixels: &mut [W]) {
+        pixels.fill(self.0);
+    }
+
+    #[inline(always)]
+    fn again(&mut self) -> Self {
+        Self(self.0)
+    }
+}
+
 /// By a fill, and fog on it in place.
 struct Fogged<'l, 'f, F: PixelFormat> {
     filled: Filled<'l, 'f, F::Word>,
@@ -65,6 +85,12 @@ impl<'f, F: PixelFormat> DrawRun<F::Word> for Fogged<'_, 'f, F> {
 pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: &mut Cover<'_, F, D>, fill: &dyn Fill<F::Word>) {
     let line = &mut Perspective::new(cover.setup, fill.units());
     draw_rows::<true, F, D>(cover, Filled { line, fill });
+}
+
+/// Draws an opaque triangle all in one word.
+#[inline(never)]
+pub(super) fn draw_evenly<F: PixelFormat, D: DepthFormat>(cover: &mut Cover<'_, F, D>, word: F::Word) {
+    draw_rows::<true, F, D>(cover, Even(word));
 }
 
 /// Draws an opaque triangle that is in fog.

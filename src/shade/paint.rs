@@ -32,7 +32,13 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
 
     #[inline]
     fn fill_evenly(self, word: F::Word) {
-        draw(self, &Even(word));
+        if let Some(draw) = self.drawn_by() {
+            draw(self, &Even(word));
+        } else if self.setup.is_patch() {
+            self.draw_small(&Even(word));
+        } else {
+            opaque::draw_evenly(self, word);
+        }
     }
 
     #[inline]

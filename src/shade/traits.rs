@@ -8,12 +8,14 @@ use super::quality::Quality;
 use super::shader::Shader;
 use crate::frame::PixelFormat;
 use crate::geometry::Inputs;
-use crate::raster::{Needs, Packing, Straight};
+use crate::raster::{InputCode, Needs, Packing, Straight};
 
 /// What set-up has to know of a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Traits {
     pub(crate) inputs: Inputs,
+    /// What sets them up.
+    code: &'static InputCode,
     straight: Straight,
     every_pixel: bool,
     /// Whether only the first channel of colours is read.
@@ -23,9 +25,12 @@ pub(crate) struct Traits {
 }
 
 impl Traits {
+    /// Inlined: where a shader's inputs are a constant, only their code is linked.
+    #[inline(always)]
     pub(crate) fn of<F: PixelFormat, S: Shader<F>>(shader: &S) -> Self {
         Self {
             inputs: shader.inputs(),
+            code: InputCode::of(shader.inputs()),
             straight: S::Quality::STRAIGHT,
             every_pixel: S::Quality::EVERY_PIXEL,
             is_gray: false,
@@ -48,14 +53,11 @@ impl Traits {
         let packing = Packing::new(packed_log2, scale, self.inputs);
         let of_small = Packing::new(packed_log2, 0, self.inputs);
         Needs {
-            inputs: self.inputs,
+            code: self.code,
             straight: if is_orthographic { Straight::Always } else { self.straight },
             every_pixel: self.every_pixel,
             scale,
-            finer: [0; 2],
-            // Hidden, because the compiler would make two of one by a multiplication of 64 bits.
-            scale_log2: [scale, core::hint::black_box(scale)],
-            packings: [packing; 2],
+            unscaled_packing: packing,
             margins: of_small.margins(),
             packing: of_small,
             color_step: F::COLOR_STEP.into(),

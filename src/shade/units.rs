@@ -4,7 +4,7 @@
 //! - Out: how many bits to shift it left for the fill.
 //! - Assumes: nothing.
 
-use crate::raster::{ATTRIBUTES, Attribute};
+use crate::raster::{ATTRIBUTES, Attribute, TriangleSetup};
 
 /// How a fill takes attributes that follow perspective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,9 @@ pub(crate) enum Form {
     Exact,
 }
 
+/// A function of a triangle, an attribute of it and a pixel.
+type InSliver = fn(&TriangleSetup, &Attribute, i32, i32) -> i32;
+
 /// How many attributes a fill takes, and in which units.
 ///
 /// In the modular form an attribute that repeats after 2^a has a integer bits and 32 − a fraction bits: what repeats needs no
@@ -25,15 +28,22 @@ pub(crate) enum Form {
 pub struct Units {
     pub(crate) form: Form,
     pub(crate) count: usize,
+    /// Of the exact form: an attribute at a pixel of a sliver, I16F16. By reference, so that programs without it do not link it.
+    pub(super) in_sliver: Option<InSliver>,
     /// By how much I16F16 is to be shifted left: 16 − a. Not of the general forms.
     up: [u8; ATTRIBUTES],
 }
 
 impl Units {
     /// I16F16.
+    #[inline(always)]
     pub(crate) const fn general(count: usize, is_exact: bool) -> Self {
-        let form = if is_exact { Form::Exact } else { Form::General };
-        Self { form, count, up: [0; ATTRIBUTES] }
+        let (form, in_sliver): (_, Option<InSliver>) = if is_exact {
+            (Form::Exact, Some(TriangleSetup::resolve_in_sliver))
+        } else {
+            (Form::General, None)
+        };
+        Self { form, count, in_sliver, up: [0; ATTRIBUTES] }
     }
 
     /// Modular, with these numbers of integer bits.
@@ -42,7 +52,7 @@ impl Units {
         for (up, bits) in up.iter_mut().zip(integer_bits) {
             *up = 16 - bits as u8;
         }
-        Self { form: Form::Modular, count: N, up }
+        Self { form: Form::Modular, count: N, in_sliver: None, up }
     }
 
     /// Bits to shift attribute `i` left: to the unit of the fill, and by its `scale_log2`.

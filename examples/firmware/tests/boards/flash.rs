@@ -30,13 +30,38 @@ const CLAMPED: &str = "fixel::scene::texture::Texture>::fetch_clamp";
 const BLENDED: &str = "fixel::shade::layered::";
 const CUT_OUT: &str = "fixel::shade::cut_out::CutOut";
 const FOG: &str = "fixel::shade::fog::lay_over";
+const UV: &str = "fixel::raster::triangle::TriangleSetup>::set_small_uv";
+const LEANING: &str = "fixel::raster::triangle::TriangleSetup>::lean_by";
+const COLORS: &str = "fixel::raster::triangle::TriangleSetup>::set_small_colors";
+const PERSPECTIVE: &str = "fixel::shade::perspective::Perspective>::near_horizon";
+const EXACT_IN_SLIVERS: &str = "fixel::raster::triangle::TriangleSetup>::resolve_in_sliver";
 
 /// What a program must not link. `all` has each of them, which shows that they are still called so.
 const FORBIDDEN: [(&str, &[&str]); 4] = [
-    ("flat", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
-    ("textured", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
-    ("textured_lit", &[EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG]),
-    ("glass", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, CUT_OUT, FOG]),
+    (
+        "flat",
+        &[
+            LIGHT,
+            LIT_OR_GOURAUD,
+            EXACT,
+            AFFINE,
+            CLAMPED,
+            BLENDED,
+            CUT_OUT,
+            FOG,
+            UV,
+            LEANING,
+            COLORS,
+            PERSPECTIVE,
+            EXACT_IN_SLIVERS,
+        ],
+    ),
+    (
+        "textured",
+        &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG, COLORS, EXACT_IN_SLIVERS],
+    ),
+    ("textured_lit", &[EXACT, AFFINE, CLAMPED, BLENDED, CUT_OUT, FOG, EXACT_IN_SLIVERS]),
+    ("glass", &[LIGHT, LIT_OR_GOURAUD, EXACT, AFFINE, CLAMPED, CUT_OUT, FOG, COLORS, EXACT_IN_SLIVERS]),
 ];
 
 /// What a program takes of a chip's flash, in bytes.

@@ -1,0 +1,210 @@
+//! Needs: what a shader wants of a triangle, and the code that sets its inputs up.
+//!
+//! - In: the traits of a shader.
+//! - Out: numbers that set-up reads, and functions that it calls.
+//! - Assumes: nothing.
+//!
+//! Set-up calls what belongs to texture coordinates and to colours through [`InputCode`]. There is one of these for each set of inputs
+//! (see [`inputs`](super::inputs)), which a shader's type names. So a program links what its shaders read.
+
+use super::gradients::Gradients;
+use super::packing::Packing;
+use super::scaling::Scaling;
+use super::spans::SmallEdges;
+use super::straight::Straight;
+use super::triangle::TriangleSetup;
+use crate::geometry::{Inputs, Oriented, ScreenVertex};
+use core::fmt;
+
+/// The functions that set up what a shader reads.
+pub(crate) struct InputCode {
+    pub(crate) inputs: Inputs,
+    /// All planes of a small triangle, of which twice the area is given. False, and they are of no use, if the general way has to.
+    pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &SmallEdges, u32, &Needs) -> bool,
+    /// All planes of any triangle, the nearest vertex of which is first.
+    pub(super) any: fn(&mut TriangleSetup, &Oriented<'_>, &Needs),
+    pub(super) uv: Option<UvCode>,
+    /// Colours of a small triangle, as plain. Returns as `small` does.
+    pub(super) small_color: Option<fn(&mut TriangleSetup, &SmallTriangle<'_>, ColorBend) -> bool>,
+}
+
+/// Those for texture coordinates.
+pub(super) struct UvCode {
+    /// Of a small triangle, as plain. Returns as [`InputCode::small`] does.
+    pub(super) small: fn(&mut TriangleSetup, &SmallTriangle<'_>) -> bool,
+    /// Bends them, unless they are straighter than a limit. Likewise.
+    pub(super) bend: fn(&mut TriangleSetup, &SmallTriangle<'_>, u32) -> bool,
+    /// Completes those that are held and linear; exactly so, or nearly.
+    pub(super) complete_held: fn(&mut TriangleSetup, &SmallTriangle<'_>, &Scaling, bool),
+    /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.
+    pub(super) complete: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &Scaling, Option<i32>),
+    /// Where their scale is applied.
+    pub(super) scaling: fn(&Needs, &[&ScreenVertex; 3]) -> Scaling,
+}
+
+impl PartialEq for InputCode {
+    fn eq(&self, other: &Self) -> bool {
+        self.inputs == other.inputs
+    }
+}
+
+impl Eq for InputCode {}
+
+impl fmt::Debug for InputCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.inputs.fmt(f)
+    }
+}
+
+/// A small triangle, on the way through its set-up.
+pub(crate) struct SmallTriangle<'a> {
+    pub(super) vertices: &'a [&'a ScreenVertex; 3],
+    pub(super) needs: &'a Needs,
+    pub(super) gradients: Gradients,
+    pub(super) q: [u32; 3],
+}
+
+/// Which ranges of colours are too large for straight lines: those with range · `fall` > `most`.
+#[derive(Clone, Copy)]
+pub(crate) struct ColorBend {
+    fall: u32,
+    most: u32,
+}
+
+/// What a shader wants of a triangle.
+pub(crate) struct Needs {
+    pub(crate) code: &'static InputCode,
+    pub(crate) straight: Straight,
+    /// Whether perspective is exact at every pixel.
+    pub(crate) every_pixel: bool,
+    /// u and v are multiplied by 2^this, 0 … 8.
+    pub(crate) scale: u32,
+    /// How u and v are packed, before they are scaled.
+    pub(crate) unscaled_packing: Packing,
+    /// How they are packed with all of the scale, as small triangles have it.
+    pub(crate) packing: Packing,
+    /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
+    pub(crate) margins: [u8; 2],
+    /// How much a colour may be off by, in levels of 1/255: a step of the format's finest channel.
+    pub(crate) color_step: u32,
+    /// Whether depth is tested.
+    pub(crate) depth: bool,
+    /// Whether all colours are known to be grey.
+    pub(crate) gray: bool,
+}
+
+impl Needs {
+    /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
+    #[inline]
+    pub(crate) fn is_exactly_straight(&self, least: u32, most: u32) -> bool {
+        least == most || matches!(self.straight, Straight::Always)
+    }
+
+    /// Whether u and v are read.
+    #[inline]
+    pub(crate) fn reads_uv(&self) -> bool {
+        matches!(self.code.inputs, Inputs::Uv | Inputs::UvColor)
+    }
+
+    /// Whether the colour is read.
+    #[inline]
+    pub(crate) fn reads_color(&self) -> bool {
+        matches!(self.code.inputs, Inputs::Color | Inputs::UvColor)
+    }
+
+    /// u or v of a vertex, I16F16, with all of the scale. What is beyond ±32768 wraps.
+    #[inline(always)]
+    pub(super) fn scaled_uv(&self, vertex: &ScreenVertex, i: usize) -> i32 {
+        (if i == 0 { vertex.u } else { vertex.v }).to_bits() << (self.scale & 31)
+    }
+
+    /// Whether texture coordinates vary by so little that with all of the scale they stay below 2²⁷.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn are_narrow(&self, vertices: &[&ScreenVertex; 3]) -> bool {
+        let [a, b, c] = vertices.map(|vertex| [vertex.u.to_bits(), vertex.v.to_bits()]);
+        [[a, b], [a, c], [b, c]]
+            .iter()
+            .all(|[a, b]| (0..2).all(|i| (a[i].abs_diff(b[i]) >> (27 - self.scale)) == 0))
+    }
+
+    /// All of the scale at the end, or for a scale of 1.
+    #[inline]
+    pub(super) fn scaled_at_the_end(&self) -> Scaling {
+        self.scaled([0; 2])
+    }
+
+    /// All of it before planes are made.
+    #[inline]
+    pub(super) fn scaled_at_once(&self) -> Scaling {
+        self.scaled([self.scale as u8; 2])
+    }
+
+    /// As much before planes are made as there is room for: their rounding is multiplied by the rest.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn scaled_for(&self, vertices: &[&ScreenVertex; 3]) -> Scaling {
+        let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
+        self.scaled([0, 1].map(|i| {
+            let size =
+                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
+            // Differences stay below 2²⁹.
+            size.leading_zeros().saturating_sub(3).min(self.scale) as u8
+        }))
+    }
+
+    #[inline(never)]
+    fn scaled(&self, finer: [u8; 2]) -> Scaling {
+        let rest = finer.map(|finer| self.scale as u8 - finer);
+        Scaling::new(finer, rest, &self.unscaled_packing)
+    }
+
+    /// Hands on the attributes in use, with the corners' values in I16F16 and what is left of the scale, as log₂, until one returns
+    /// false: u and v, then colours, of which there is one in a grey triangle. Values may have wrapped; differences of them have not.
+    #[inline]
+    pub(super) fn each_attribute(
+        &self,
+        scaling: &Scaling,
+        vertices: &[&ScreenVertex; 3],
+        gray: bool,
+        mut set: impl FnMut(usize, [i32; 3], u32) -> bool,
+    ) -> bool {
+        let first = if self.reads_uv() { 0 } else { 2 };
+        let end = if !self.reads_color() {
+            2
+        } else if gray {
+            3
+        } else {
+            5
+        };
+        (first..end).all(|i| {
+            let at = match i {
+                0 | 1 => scaling.uv(vertices, i),
+                _ => vertices.map(|vertex| i32::from(vertex.color[i - 2].to_bits()) << 8),
+            };
+            set(i - first, at, if i < 2 { scaling.rest(i) } else { 0 })
+        })
+    }
+}
+
+impl ColorBend {
+    /// None.
+    pub(super) const NONE: Self = Self { fall: 0, most: 0 };
+
+    /// Whether it is not none.
+    pub(super) fn is_needed(self) -> bool {
+        self.fall != 0
+    }
+
+    /// Linear interpolation is off by ¼ · range · fall / least at most (see [`straight`](super::straight)). That has to be
+    /// at most one `step`, in whole levels of 1/255, 1 … 8. `fall` is that of q, below 2²⁷, and ranges are below 2¹⁶ units of
+    /// 1/256 level.
+    pub(super) fn new(fall: u32, least: u32, step: u32) -> Self {
+        Self { fall: (fall >> 16) + 1, most: (step << 10) * (least >> 16) }
+    }
+
+    #[inline]
+    pub(super) fn is_too_large(self, range: i32) -> bool {
+        range as u32 * self.fall > self.most
+    }
+}

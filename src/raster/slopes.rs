@@ -1,0 +1,102 @@
+//! Slopes: how the barycentric weights of a triangle of any size change over the screen, and planes made with them.
+//!
+//! - In: the corners of a triangle, and 1/area.
+//! - Out: planes, from values at the corners; whether the triangle is a [sliver](super::setup).
+//! - Assumes: the corners lie in the guard band.
+
+use super::plane::Plane;
+use super::triangle::{TriangleSetup, edges};
+use crate::math::recip::Reciprocal;
+use crate::num::{mul_round, normalise};
+
+/// How weights of corners 1 and 2 change over the screen, and where planes begin: for set-up only.
+pub(super) struct Slopes {
+    /// Whether planes hold the values at the corners: see [`TriangleSetup::sliver`].
+    pub(super) sliver: bool,
+    /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
+    of_weights: [[i32; 2]; 2],
+    pub(super) fraction_bits: i32,
+    /// Corner 0's pixel.
+    pixel: [i32; 2],
+    /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
+    to_center: [i32; 2],
+    /// From that pixel to the middle of what is within the screen.
+    to_middle: [i32; 2],
+    /// Columns and rows of what is within the screen, added up.
+    pub(super) size: u32,
+}
+
+impl Slopes {
+    /// Finds out whether it is a sliver, too. `area` is twice the area in 1/256 px².
+    ///
+    /// Not inlined: what it takes is not on the stack while planes are set.
+    #[inline(never)]
+    pub(super) fn new(setup: &TriangleSetup, area: u32) -> Self {
+        let (edges, a) = (edges(&setup.corners), setup.corners[0]);
+        let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
+        let (height, width) = (spread(edges[0]), spread(edges[1]));
+        // The largest difference to 30 bits, times 1/area.
+        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
+        let shift = normalise(largest).1 - 2;
+        let Reciprocal { mantissa, zeros } = setup.area;
+        // (e·2^shift · mantissa) / 2³¹, by halves of the mantissa: e is below 2¹⁵, and so `shift` at least 15.
+        let weight =
+            |e: i32| ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift));
+        let pixel = a.map(|at| at >> 4);
+        let extents = [0, 1].map(|axis| setup.extent(axis));
+        Self {
+            // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of
+            // 2^−`fraction_bits` a pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
+            sliver: height.max(width) * 16 > area || 2 * shift < 23 + zeros,
+            of_weights: edges.map(|edge| edge.map(weight)),
+            // A weight · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
+            fraction_bits: shift as i32 - 5 - zeros as i32,
+            pixel,
+            to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
+            to_middle: [0, 1].map(|axis| ((extents[axis][0] + extents[axis][1]) >> 1) - pixel[axis]),
+            size: extents.iter().map(|[first, last]| last - first).sum::<i32>() as u32,
+        }
+    }
+
+    /// Completes a plane whose `origin` holds the value at corner 0, from the rise to corners 1 and 2.
+    #[inline(never)]
+    pub(super) fn set_plane(&self, plane: &mut Plane, rise: [i32; 2]) {
+        if self.sliver {
+            plane.steps = rise;
+            return;
+        }
+        for axis in 0..2 {
+            let [b, c] = self.of_weights[axis];
+            let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
+            let bits = self.fraction_bits;
+            let (step, rest) = if bits > 0 {
+                let step = ((slope >> (bits - 1)) + 1) >> 1;
+                // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
+                let rest = slope.wrapping_sub(step << bits);
+                (
+                    step,
+                    if bits > 12 {
+                        ((rest >> (bits - 12)) * self.to_middle[axis]) >> 12
+                    } else {
+                        (rest * self.to_middle[axis]) >> bits
+                    },
+                )
+            } else {
+                (slope << -bits, 0)
+            };
+            plane.steps[axis] = step;
+            plane.origin = plane
+                .origin
+                .wrapping_add_signed((step >> 4) * self.to_center[axis])
+                .wrapping_sub((self.pixel[axis].wrapping_mul(step)) as u32)
+                .wrapping_add_signed(rest);
+        }
+    }
+
+    /// Sets a plane from the values at the corners.
+    #[inline]
+    pub(super) fn set_plane_of(&self, plane: &mut Plane, at: [u32; 3]) {
+        plane.origin = at[0];
+        self.set_plane(plane, [1, 2].map(|i| at[i].wrapping_sub(at[0]) as i32));
+    }
+}
