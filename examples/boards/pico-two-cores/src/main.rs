@@ -10,11 +10,9 @@ mod bus;
 mod frames;
 #[path = "../../pico/src/scene.rs"]
 mod scene;
-mod st7789;
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::MODE_0;
 use fixel::embedded_graphics::prelude::*;
 use fixel::{Band, Depth16};
@@ -138,15 +136,14 @@ fn main() -> ! {
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, sio.gpio_bank0, &mut chip.RESETS);
     let mut delay = Timer::new(chip.TIMER, &mut chip.RESETS, &clocks);
 
-    // The display is alone on its bus: selected for good.
-    let Ok(()) = pins.gpio17.into_push_pull_output().set_low();
     let lines = (pins.gpio19.into_function(), pins.gpio18.into_function());
     let wire =
         Spi::new(chip.SPI0, lines).init(&mut chip.RESETS, clocks.peripheral_clock.freq(), BUS.Hz(), MODE_0);
     let data_command = pins.gpio16.into_push_pull_output();
+    let select = pins.gpio17.into_push_pull_output();
     let channel = chip.DMA.split(&mut chip.RESETS).ch0;
     let spare = [2, 3].map(|i| PIXELS[i].take().as_mut_slice());
-    bus::start(channel, wire, data_command, &mut delay, spare);
+    bus::start(channel, wire, (data_command, select), &mut delay, spare);
     #[expect(unsafe_code, reason = "unmasking an interrupt is")]
     // SAFETY: Nothing here relies on the interrupt being masked: what its handler shares is behind a critical section.
     unsafe {
