@@ -156,7 +156,7 @@ fn mixed(dark: [u8; 3], light: [u8; 3], level: u8, most: u8) -> Rgb888 {
 
 /// 1 bit, in pages of eight rows.
 fn ssd1306() -> Result<Shown, Box<dyn Error>> {
-    const CURVE: [u8; 256] = contrast(20, 205);
+    const CURVE: [u8; 256] = contrast(20, 195);
     let mut memory = Vec::new();
     show::<Gray8, PackError>(&NIGHT, |band| {
         through(&CURVE, band);

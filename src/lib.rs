@@ -164,6 +164,51 @@
 //! [`DisplayList::render_changed`] draws and sends only what changed since the last frame; without depth
 //! [`DisplayList::sort_back_to_front`] settles what is in front; two cores can render two bands of one list.
 //!
+//! # Displays of other colours
+//!
+//! A band is in any of these formats: [`Rgb565`](embedded_graphics::pixelcolor::Rgb565), the fastest, `Bgr565`, both also as
+//! [`BigEndian`]; `Rgb888`, `Bgr888` and `Rgb666`, three bytes a pixel in the order of the wire; and `Gray8`. Textures, flat colours and
+//! fog stay RGB565: no asset has to be made anew. For a display that has fewer bits the band is dithered when it is sent. So surfaces, fog,
+//! blending and text are dithered alike, and no loop of a surface knows of it:
+//!
+//! | display | band | what is sent |
+//! |---|---|---|
+//! | SSD1306, SH1106, ST7567: 1 bit in pages | `Gray8`, 8 or 16 rows | `band.dithered::<BinaryColor>().pack_pages(&mut bytes)?` |
+//! | most e-paper, ST7920: 1 bit in rows | `Gray8` | `band.dithered::<BinaryColor>().pack_rows(&mut bytes)?` |
+//! | Sharp's memory LCDs, bytes with the least bit first | `Gray8` | `….pack_rows_lsb_first(&mut bytes)?` |
+//! | e-paper of 4 greys; SSD1322, SSD1327: 16 greys | `Gray8` | `band.dithered::<Gray2>()`, `<Gray4>()`, and `.pack_rows(…)` |
+//! | 16 or 18 bits, as smooth as they go | `Rgb888` | `band.dithered::<Rgb565>()`, `<Rgb666>()` |
+//! | 18 or 24 bits, as they are | `Rgb666`, `Rgb888`, `Bgr888` | `band.as_bytes()` |
+//! | any of them, by a driver that is a `DrawTarget` | | `display.fill_contiguous(&area, band.dithered::<C>())` |
+//!
+//! ```
+//! # use embedded_graphics::{pixelcolor::{BinaryColor, Gray8, Rgb565}, prelude::*};
+//! # use fixel::{prelude::*, PackError};
+//! # const TRIANGLE: Mesh = Mesh::new(
+//! #     &[Vertex::new(-1.0, -1.0, 0.0), Vertex::new(1.0, -1.0, 0.0), Vertex::new(0.0, 1.0, 0.0)],
+//! #     &[[0, 1, 2]],
+//! # );
+//! # fn send(_: &[u8]) {}
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! const OLED: Size = Size::new(128, 64);
+//! let (mut pixels, mut depth, mut page) = ([0; 128 * 8], [0; 128 * 8], [0; 128]); // 1, 2 and ⅛ KiB
+//! let mut band = Band::<Gray8, Depth16>::new(Size::new(128, 8), &mut pixels, &mut depth)?;
+//! let camera = Camera::perspective(Turn::from_degrees(50), OLED).at(Vec3::lit(0.0, 0.0, 2.5));
+//! let mut memory = ListMemory::<8, 4>::new();
+//! let mut list = DisplayList::<Gray8, Depth16, 2>::new(&mut memory);
+//! camera.draw(&TRIANGLE, &Pose::IDENTITY, &Material::flat(Rgb565::CSS_GOLD), &mut list)?;
+//! list.render_bands(OLED.height, &Rgb565::BLACK, &mut band, |_, band| {
+//!     send(band.dithered::<BinaryColor>().pack_pages(&mut page)?); // one page, by I2C or SPI
+//!     Ok::<_, PackError>(())
+//! })?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! 3D is readable in 1 bit where there is contrast: a black sky with fog that ends in it, light from one side, a light floor of few large
+//! squares, textures of few large texels. `examples/displays.rs` shows one scene on five displays. [`Quantize`] makes the colours of others,
+//! [`PixelFormat`] other words in memory.
+//!
 //! What is particular to a display is a type: [`PixelFormat`] and [`DepthFormat`] of the [`Band`]. What is
 //! particular to a surface is a [`Material`], or a [`Shader`] of yours.
 //!

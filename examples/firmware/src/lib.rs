@@ -1,4 +1,4 @@
-//! The part of the firmware that a board and a desktop share: the [`scene`], how its colours become
+//! The part of the firmware that a board and a desktop share: the [`scene`], the bytes of its
 //! grey levels ([`gray4`]), the [`checksum`]s by which two machines compare their pictures, and the
 //! driver of the OLED ([`ssd0323`]).
 //!

@@ -12,10 +12,7 @@ use fixel::material::{Gouraud, Textured};
 use fixel::prelude::*;
 use fixel::{CapacityError, Surface};
 
-use crate::{
-    checksum::{Gray4Sum, Rgb565Sum},
-    gray4,
-};
+use crate::checksum::{Gray4Sum, Rgb565Sum};
 
 /// Frames of one full turn of the cube.
 pub const FRAMES: u32 = 32;
@@ -196,7 +193,7 @@ impl Scene {
         Ok(sum.finish())
     }
 
-    /// Draws a whole frame on a grey display, and returns the checksums of its RGB565 and Gray4 forms.
+    /// Draws a whole frame on a grey display, dithered, and returns the checksums of its RGB565 and Gray4 forms.
     ///
     /// # Errors
     ///
@@ -214,8 +211,8 @@ impl Scene {
     ) -> Result<(u32, u32), D::Error> {
         let mut sum = Gray4Sum::new();
         let rgb565 = self.frame(frame, pixels, depth, |strip| {
-            sum.add(strip.colors().map(gray4::luma));
-            display.fill_contiguous(&strip.bounding_box(), strip.colors().map(gray4::luma))
+            sum.add(strip.dithered::<Gray4>());
+            display.fill_contiguous(&strip.bounding_box(), strip.dithered::<Gray4>())
         })?;
         Ok((rgb565, sum.finish()))
     }
