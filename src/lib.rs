@@ -1,6 +1,11 @@
 //! fixel ("fixed-point pixels") draws perspective-correct, textured, lit 3D triangles on
 //! microcontrollers, in integers, into any [embedded-graphics](embedded_graphics) display.
 //!
+//! The [`guide`] begins at the beginning: [coordinates](guide::coordinates) with drawings, coming from
+//! [other engines](guide::engines), your [model](guide::assets), [RAM](guide::memory), [light and fog](guide::surfaces),
+//! [labels and touch](guide::interface), [DMA and two cores](guide::parallel), [speed](guide::speed), and what to do when
+//! [something looks wrong](guide::troubleshooting).
+//!
 //! # The contract
 //!
 //! | | promise |
@@ -15,7 +20,7 @@
 //! | determinism | the same bytes on every machine and for every band height |
 //! | arithmetic | no float per vertex or per pixel (only in set-up conveniences); no 64-bit multiply and no divide per pixel |
 //! | memory | no `alloc`, no recursion; every capacity is a constant |
-//! | safety | no `unsafe`; no input panics a release build, none writes outside the target; nothing overflows in a debug build of any target, Armv6-M included |
+//! | safety | no `unsafe`; no input panics a release build (what draws into a [`Band`] at once does not even link a panic), none writes outside the target; nothing overflows in a debug build of any target, Armv6-M included |
 //! | failure | running out of a capacity is a [`CapacityError`] that names it and leaves the list as it was; bad assets, numbers out of range included, are a compile error through `const fn`s meant for `const` ([`Mesh::new`], [`Texture::new`], [`Vertex::new`], [`Vertex::uv`], [`Vertex::normal`], [`Pose::scaled_lit`]; elsewhere they panic, documented, the only exception) and a typed error through their `try_…`; cameras, [`Vec3::lit`] and everything else limit, documented, with `try_…` beside where one may want to know; targets are at most 1023 × 1023, a typed error beyond |
 //!
 //! # Example
@@ -55,7 +60,7 @@
 //! # }
 //! ```
 //!
-//! What a frame takes, and how to estimate it: [`cost`]; its pictures' exactness is derived in the source, where it arises.
+//! What a frame takes, and how to estimate it: [`guide::cost`]; its pictures' exactness is derived in the source, where it arises.
 //!
 //! # How it works
 //!
@@ -82,7 +87,7 @@
 //!   areas: divided by the triangle's own they are the barycentric weights). There is no coverage test per pixel.
 //! - **perspective** takes one division for each run of visible pixels. From there an attribute is A + B/w, and 1/w comes from a table of
 //!   1024 reciprocals: at every pixel, or at every eighth where it changes little. A small triangle is drawn at one go, without any
-//!   division: its attributes are linear on the screen, or one quadratic. [`pixel`] tells it step by step.
+//!   division: its attributes are linear on the screen, or one quadratic. [`guide::pixel`] tells it step by step.
 //!
 //! `draw` joins them. A [`DisplayList`] cuts this in two behind **geometry**: it keeps the screen vertices and the triangles that are
 //! seen, each vertex transformed and lit once, and sends them through the rest as often as there are bands.
@@ -220,15 +225,11 @@
 #[cfg(test)]
 extern crate std;
 
-#[doc = include_str!("cost.md")]
-pub mod cost {}
-
-#[doc = include_str!("pixel.md")]
-pub mod pixel {}
-
 mod draw;
 mod frame;
 mod geometry;
+#[cfg(any(doc, doctest))]
+pub mod guide;
 mod math;
 pub mod num;
 mod raster;

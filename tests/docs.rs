@@ -1,10 +1,12 @@
 //! The promise: README's first program compiles and runs in a new project as it stands, on a stack of 128 KiB, and the example and the
-//! crate's front page show the same lines. And the tables of tests/README.md
+//! crate's front page show the same lines. The guide lists its pages, and its recipe for RAM adds up. And the tables of tests/README.md
 //! name tests that there are.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+
+use fixel::ListMemory;
 
 const README: &str = include_str!("../README.md");
 const EXAMPLE: &str = include_str!("../examples/hello_triangle.rs");
@@ -71,6 +73,92 @@ fn readmes_first_program_runs_in_a_new_project_on_a_small_stack() {
     for color in ["38;2;255;251;255m", "38;2;255;215;0m"] {
         assert!(shown.contains(color), "{color:?} is not in the picture");
     }
+}
+
+/// The guide's pages, by name.
+fn pages() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide");
+    let paths = fs::read_dir(folder).expect("the guide").map(|entry| entry.expect("an entry").path());
+    let read = |path: std::path::PathBuf| {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        (name, fs::read_to_string(path).expect("a page"))
+    };
+    paths.map(read).filter(|(name, _)| name != "guide").collect()
+}
+
+#[test]
+fn the_guide_lists_its_pages_and_its_drawings_say_what_they_show() {
+    let modules = include_str!("../src/guide.rs");
+    let list = include_str!("../src/guide/guide.md");
+    let mut drawings = 0;
+    for (name, text) in pages() {
+        assert!(
+            modules.contains(&format!("guide/{name}.md\")]\npub mod {name} {{}}")),
+            "{name} is no module"
+        );
+        assert!(list.contains(&format!("| [`{name}`] |")), "{name} is not in the list");
+        for drawing in text.split("<svg").skip(1) {
+            let (drawing, _) = drawing.split_once("</svg>").expect("a drawing ends");
+            // An empty line would end it for Markdown.
+            assert!(!drawing.contains("\n\n"), "{name}: a drawing has an empty line");
+            let says = drawing.split_once("role=\"img\" aria-label=\"").map(|(_, label)| label);
+            let label = says.and_then(|label| label.split('"').next()).unwrap_or_default();
+            assert!(label.len() > 60, "{name}: a drawing does not say what it shows");
+            drawings += 1;
+        }
+    }
+    assert!(pages().len() >= 11 && drawings >= 10, "{drawings} drawings");
+}
+
+#[test]
+fn the_recipe_for_ram_adds_up() {
+    /// `ListMemory<V, T>`, where a length has so many bytes.
+    const fn memory(v: usize, t: usize, length: usize) -> usize {
+        16 * v + 8 * t + (2 * t).next_multiple_of(length) + 3 * length
+    }
+    // Of this machine. On a microcontroller a length has 4 bytes.
+    let here = size_of::<usize>();
+    assert_eq!(memory(546, 429, here), ListMemory::<546, 429>::BYTES);
+    assert_eq!(memory(151, 133, here), ListMemory::<151, 133>::BYTES);
+    let (_, page) = pages().into_iter().find(|(name, _)| name == "memory").expect("the page");
+    let numbers = |cell: &str| -> Vec<usize> {
+        let digits = |c: char| !c.is_ascii_digit();
+        cell.split([',', '×']).filter_map(|part| part.replace(digits, "").parse().ok()).collect()
+    };
+    let mut rows = 0;
+    for line in page.lines().skip_while(|line| !line.contains("bytes without the stack")).skip(2) {
+        let cells: Vec<_> = line.split('|').map(str::trim).collect();
+        let [_, screen, height, buffers, capacity, bytes, _] = cells[..] else { break };
+        let (screen, buffers) = (numbers(screen), numbers(buffers));
+        let bands = screen[0] * numbers(height)[0] * 2 * (buffers[0] + buffers[1]);
+        let list = match numbers(capacity)[..] {
+            [v, t, n] => memory(v, t, 4) + 32 + 152 * n,
+            _ => 0,
+        };
+        assert_eq!(numbers(bytes), [bands + list], "{line}");
+        rows += 1;
+    }
+    assert_eq!(rows, 6);
+
+    // What was counted for the scene of two of these rows, and for how much longer a frame takes in low bands.
+    let counted: Vec<_> = include_str!("../examples/firmware/bands.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(' ').collect::<Vec<_>>())
+        .collect();
+    let of = |rows: &str, column: usize| -> usize {
+        let line = counted.iter().find(|line| line[0] == rows).expect("a line of bands.txt");
+        line[column].parse().expect("a number")
+    };
+    let spaced = |bytes: usize| format!("{} {:03}", bytes / 1000, bytes % 1000);
+    for rows in ["16", "8"] {
+        let row = format!("| 240 × 320 | {rows} | 1, 1 | 546, 429, 3 | {} |", spaced(of(rows, 1)));
+        assert!(page.contains(&row), "the page has no {row}");
+    }
+    let longer = ["64", "32", "16", "8", "4"]
+        .map(|rows| format!("{} %", (of(rows, 2) * 1000 / of("whole", 2) - 1000 + 5) / 10));
+    let row = format!("| longer by | 0 | {} |", longer.join(" | "));
+    assert!(page.contains(&row), "the page has no {row}");
 }
 
 #[test]

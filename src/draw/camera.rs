@@ -13,7 +13,7 @@ use crate::num::{I12F4, U1F31};
 use crate::scene::{Camera, Lights, Mesh, Projection, Vertex};
 use crate::shade::{Fog, Surface};
 
-/// A point of the world on the screen.
+/// A point of the world on the screen, of [`Camera::project`]. [`interface`](crate::guide::interface) hangs labels on such points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Projected {
     /// Pixels from the left edge; pixel centres are at +½.

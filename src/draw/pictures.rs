@@ -64,7 +64,7 @@ use embedded_graphics::primitives::Rectangle;
 ///
 /// # Cost
 ///
-/// On a Cortex-M0+ a pixel takes 15 cycles more than in a [`Band`](crate::Band) (see [`cost`](crate::cost)), a row of a triangle
+/// On a Cortex-M0+ a pixel takes 15 cycles more than in a [`Band`](crate::Band) (see [`cost`](crate::guide::cost)), a row of a triangle
 /// 85 more, and then what the display does with them, for which each row is a window. Drawing takes up to 2 KiB of stack, the
 /// picture itself and a run of 64 words (128 bytes) included; nothing is kept between two calls.
 #[derive(Clone, Copy, Debug)]

@@ -14,6 +14,24 @@ use crate::shade::{Cover, InFog, Look, Surface};
 /// Positions within ±1023½ px may be given: columns and rows −1023 … 1022 lie inside. Only the rows of `band` are drawn, and only
 /// what `cull` does not leave out.
 ///
+/// ```
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::num::U1F31;
+/// use fixel::{Band, Cull, Depth16, Material, ScreenVertex, draw_triangle};
+/// let at = |x: &str, y: &str| ScreenVertex {
+///     x: x.parse().unwrap(), // pixels, in steps of 1/16
+///     y: y.parse().unwrap(),
+///     q: U1F31::lit("0.5"), // twice as far away as the near plane
+///     ..Default::default()
+/// };
+/// let (mut pixels, mut depth) = ([0; 16 * 16], [0; 16 * 16]);
+/// let mut band = Band::<Rgb565, Depth16>::new(Size::new(16, 16), &mut pixels, &mut depth)?;
+/// let corners = [at("0", "0"), at("0", "12.5"), at("12.5", "0")]; // counter-clockwise: the front
+/// draw_triangle(&corners, Cull::Back, &Material::flat(Rgb565::CSS_GOLD), &mut band)?;
+/// assert_eq!(band.depth()[0], 1 << 15); // near/w in 16 bits
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
 ///
 /// [`RangeError`] if a vertex lies outside the guard band of ±1023½ px or a texture coordinate beyond ±8192

@@ -13,6 +13,20 @@ use embedded_graphics::prelude::RawData;
 /// you make of each row.
 pub trait Background<F: PixelFormat> {
     /// Fills row `y` of the screen, from column 0 on.
+    ///
+    /// ```
+    /// use fixel::{Background, PixelFormat, embedded_graphics::pixelcolor::Rgb565};
+    /// /// A sky down to a row, and the sea below it.
+    /// struct Horizon(u32);
+    /// impl<F: PixelFormat> Background<F> for Horizon {
+    ///     fn fill_row(&self, y: u32, row: &mut [F::Word]) {
+    ///         row.fill(if y < self.0 { F::rgb888(140, 190, 255) } else { F::rgb888(20, 60, 120) });
+    ///     }
+    /// }
+    /// let mut row = [0; 4];
+    /// Background::<Rgb565>::fill_row(&Horizon(160), 200, &mut row);
+    /// assert_eq!(row, [20 >> 3 << 11 | 60 >> 2 << 5 | 120 >> 3; 4]);
+    /// ```
     fn fill_row(&self, y: u32, row: &mut [F::Word]);
 }
 
@@ -44,7 +58,7 @@ impl<F: PixelFormat> Background<F> for Gray8 {
     }
 }
 
-/// From one colour at the top of the screen to another at its bottom.
+/// From one colour at the top of the screen to another at its bottom: a sky, and what [fog](crate::Fog::towards) vanishes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gradient {
     /// Red, green and blue of row 0, I16F16, plus a half for rounding.

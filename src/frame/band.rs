@@ -19,7 +19,7 @@ use embedded_graphics::geometry::Size;
 /// what lies outside its rows is not drawn. At first it contains what the memory did. Begin each picture with
 /// [`clear`](embedded_graphics::draw_target::DrawTarget::clear) or [`Band::clear_to`], which forget depths too. (The `clear` of a
 /// part, of a target that is `clipped` or `cropped`, is a `fill_solid` in embedded-graphics: it keeps depth.) To send one band by
-/// DMA while another is drawn, see [`Band::swap_pixels`].
+/// DMA while another is drawn, see [`Band::swap_pixels`]. [`memory`](crate::guide::memory) has how many rows it wants.
 ///
 /// ```
 /// use fixel::{Band, Depth16};

@@ -11,7 +11,14 @@ use super::vertex_colors::{FACETED, Light, LightCode, SMOOTH, VertexColors};
 use crate::math::Pose;
 use crate::scene::Lights;
 
-/// Where the colour of a mesh's vertices comes from. The default is the vertices' own colour, unlit.
+/// Where the colour of a mesh's vertices comes from, for a [`Shader`](crate::Shader) that reads colours. The default is the vertices'
+/// own colour, unlit. [`Material`](crate::Material) has builders of the same names.
+///
+/// ```
+/// use fixel::Coloring;
+/// let brass = Coloring::of([200, 160, 60]).lit(); // red, green and blue, 0 … 255, times the light of the view
+/// # let _ = brass;
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Coloring {
     /// Red, green and blue of all vertices; `None`: each has its own.

@@ -37,10 +37,10 @@
 
 use super::clip::{CUT_AT, Clip, FINER};
 use super::fan::center;
+use super::ratio::{Ratio, mix};
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip};
 use super::vertex_colors::VertexColors;
-use crate::math::recip::Reciprocal;
 use crate::num::{I12F4, I16F16, U8F8, mul_long, wide};
 use crate::scene::Vertex;
 use core::mem;
@@ -81,12 +81,17 @@ impl At {
 impl Polygon<'_> {
     #[inline(always)]
     fn at(&self, i: usize, axis: usize) -> i64 {
-        i64::from(self.at[i].upper[axis]) << 32 | i64::from(self.at[i].lower[axis])
+        let at = self.at.get(i).unwrap_or(&At::ZERO);
+        i64::from(at.upper[axis & 3]) << 32 | i64::from(at.lower.get(axis).copied().unwrap_or(0))
     }
 
     #[inline(always)]
-    fn set(&mut self, i: usize, axis: usize, at: i64) {
-        (self.at[i].upper[axis], self.at[i].lower[axis]) = ((at >> 32) as i16, at as u32);
+    fn set(&mut self, i: usize, axis: usize, value: i64) {
+        if let Some(At { upper, lower }) = self.at.get_mut(i)
+            && let (Some(upper), Some(lower)) = (upper.get_mut(axis), lower.get_mut(axis))
+        {
+            (*upper, *lower) = ((value >> 32) as i16, value as u32);
+        }
     }
 
     /// Sets a coordinate of corner `to` between those of `a` (where `t` is 0) and `b` (1).
@@ -98,7 +103,8 @@ impl Polygon<'_> {
     /// A coordinate without its last `dropped` bits, 0 … 31. What is left has to fit 32 bits.
     #[inline(never)]
     fn short(&self, i: usize, axis: usize, dropped: i32) -> i32 {
-        i32::from(self.at[i].upper[axis]) << (31 - dropped) << 1 | (self.at[i].lower[axis] >> dropped) as i32
+        let at = self.at(i, axis);
+        ((at >> 32) as i32) << (31 - dropped) << 1 | (at as u32 >> dropped) as i32
     }
 
     /// Moves the vertices before `first` to the end, by three reversals. (`rotate_left` takes 2 KiB of flash, and more
@@ -194,7 +200,9 @@ impl Clip {
             may_be_inside = w >= self.least;
         }
         self.look(polygon, i);
-        let to = &mut polygon.vertices[i];
+        let Some(to) = polygon.vertices.get_mut(i) else {
+            return;
+        };
         to.set_attributes(vertex, coloring);
         // `place_bare` may overwrite it.
         let outside = to.y;
@@ -226,20 +234,22 @@ impl Clip {
     /// border: that takes a matrix that is no rotation, see the head of this file.
     #[inline(never)]
     fn put_on_screen(&self, polygon: &mut Polygon<'_>, i: usize) {
-        if polygon.vertices[i].x != NOT_PLACED {
+        if polygon.vertices.get(i).is_none_or(|vertex| vertex.x != NOT_PLACED) {
             return;
         }
         // All coordinates are shortened alike, so that the largest has 30 bits and a sign. Without perspective w does not
         // divide: it keeps its own unit.
         let is_flat = self.flat != 0;
-        let [x, y, w, _] = polygon.at[i].upper.map(i32::from);
+        let [x, y, w] = [0, 1, 2].map(|axis| (polygon.at(i, axis) >> 32) as i32);
         let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
         let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
         let [x, y] = [0, 1].map(|axis| polygon.short(i, axis, dropped));
         // Rounded up, so that it is not before the near plane and q not above 1.
         let w = polygon.short(i, 2, if is_flat { FINE } else { dropped }) + 1;
         let w = if is_flat { w.min(self.far) } else { w };
-        let to = &mut polygon.vertices[i];
+        let Some(to) = polygon.vertices.get_mut(i) else {
+            return;
+        };
         let on_border = |at: i32| Some(at.clamp(-GUARD, GUARD));
         let place = (&mut to.x, &mut to.y, &mut to.q);
         let at = |axis| if axis == 0 { x } else { y };
@@ -285,14 +295,18 @@ impl Clip {
             // Behind the eye the border is negative, and both may be true.
             outside |= (i16::from(-at > border) | i16::from(at > border) << 1) << bit;
         }
-        polygon.vertices[i].y = I12F4::from_bits(outside);
+        if let Some(vertex) = polygon.vertices.get_mut(i) {
+            vertex.y = I12F4::from_bits(outside);
+        }
     }
 
     /// The sides outside of which a corner lies, as bits. None if it needs no clipping.
     #[inline(never)]
     fn outside(polygon: &Polygon<'_>, i: usize) -> u32 {
-        let vertex = &polygon.vertices[i];
-        if vertex.x == NOT_PLACED { vertex.y.to_bits() as u32 } else { 0 }
+        match polygon.vertices.get(i) {
+            Some(vertex) if vertex.x == NOT_PLACED => vertex.y.to_bits() as u32,
+            _ => 0,
+        }
     }
 
     /// Clips a convex polygon by one plane. It may be left with no corners.
@@ -336,64 +350,25 @@ impl Clip {
             Some(&w) => polygon.set(to, 2, w),
             None => polygon.mix(2, [inside, outside, to], &t),
         }
-        polygon.vertices[to].y = I12F4::ZERO;
+        let vertices = &mut *polygon.vertices;
+        let attributes = |i: usize| vertices.get(i).map(|vertex| (vertex.u, vertex.v, vertex.color));
+        let (Some(a), Some(b)) = (attributes(inside), attributes(outside)) else {
+            return;
+        };
+        let Some(vertex) = vertices.get_mut(to) else {
+            return;
+        };
+        (vertex.x, vertex.y) = (NOT_PLACED, I12F4::ZERO);
+        let mixed = |a: I16F16, b: I16F16| I16F16::from_bits(mix(a.to_bits(), b.to_bits(), t.upper));
+        (vertex.u, vertex.v) = (mixed(a.0, b.0), mixed(a.1, b.1));
+        for ((channel, a), b) in vertex.color.iter_mut().zip(a.2).zip(b.2) {
+            let [a, b] = [a, b].map(|channel| i32::from(channel.to_bits()));
+            // Most often they are equal, and then `mix` would give the same.
+            *channel = U8F8::from_bits(if a == b { a } else { mix(a, b, t.upper) } as u16);
+        }
         // After the last two sides nothing is asked any more: what lies on the top side is not outside the bottom one.
         if side < 4 {
             self.look(polygon, to);
         }
-        let vertices = &mut *polygon.vertices;
-        vertices[to].x = NOT_PLACED;
-        vertices[to].u =
-            I16F16::from_bits(mix(vertices[inside].u.to_bits(), vertices[outside].u.to_bits(), t.upper));
-        vertices[to].v =
-            I16F16::from_bits(mix(vertices[inside].v.to_bits(), vertices[outside].v.to_bits(), t.upper));
-        for i in 0..3 {
-            let [a, b] = [inside, outside].map(|vertex| i32::from(vertices[vertex].color[i].to_bits()));
-            // Most often they are equal, and then `mix` would give the same.
-            vertices[to].color[i] = U8F8::from_bits(if a == b { a } else { mix(a, b, t.upper) } as u16);
-        }
     }
-}
-
-/// A ratio of 0 … 1.
-struct Ratio {
-    /// In units of 2⁻³⁰.
-    upper: i32,
-    /// The remainder, in units of 2⁻⁵⁴.
-    lower: i32,
-}
-
-impl Ratio {
-    /// `before` / (`before` + `behind`), the distances of an edge's ends from a plane, 0 … 2⁴⁷ each: to 30 bits, and if it is
-    /// to be fine to 2⁻⁴⁴, by a second quotient of what the first one leaves.
-    #[inline(never)]
-    fn new(before: i64, behind: i64, is_fine: bool) -> Self {
-        let whole = before + behind;
-        if whole == 0 {
-            return Self { upper: 0, lower: 0 };
-        }
-        let shift = whole.leading_zeros() - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
-        let (before, whole) = (before << shift, whole << shift);
-        // From its upper 32 bits: 1/whole = mantissa · 2⁻⁷⁸. So before/whole in 2⁻³⁰ is before · mantissa / 2⁴⁸.
-        let mantissa = Reciprocal::precise_normalised((whole >> 16) as u32, 1).mantissa;
-        let upper = (mul_long(before, mantissa) >> 18).min(1 << 30) as i32;
-        let rest = if is_fine { (before - mul_long(whole, upper)) as i32 } else { 0 };
-        Self { upper, lower: (wide(rest, mantissa) >> 24) as i32 }
-    }
-
-    /// From `a` to `b`, which differ by less than 2⁴⁷, rounded down.
-    #[inline(always)]
-    fn between(&self, a: i64, b: i64) -> i64 {
-        let mut share = mul_long(b - a, self.upper);
-        if self.lower != 0 {
-            share += mul_long((b - a) >> 24, self.lower);
-        }
-        a + share
-    }
-}
-
-/// a + (b − a) · t / 2³⁰, rounded to nearest. Weighted with 2³⁰ − t and t, as b − a might overflow.
-#[inline(never)]
-fn mix(a: i32, b: i32, t: i32) -> i32 {
-    ((wide(a, (1 << 30) - t) + wide(b, t) + (1 << 29)) >> 30) as i32
 }

@@ -64,7 +64,9 @@ pub(super) fn center(polygon: &[ScreenVertex]) -> (usize, bool) {
 /// polygon. The signed areas add up to that of the polygon, the unsigned ones to that and twice what is turned over.
 #[inline(never)]
 fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
-    let (before, from) = polygon.split_at(first);
+    let Some((before, from)) = polygon.split_at_checked(first) else {
+        return 0;
+    };
     let mut around =
         from.iter().chain(before).map(|vertex| [vertex.x, vertex.y].map(|at| i32::from(at.to_bits())));
     let Some([x, y]) = around.next() else {

@@ -6,6 +6,7 @@ mod coloring;
 mod cut;
 mod fan;
 mod orient;
+mod ratio;
 mod screen;
 mod stats;
 mod transform;

@@ -1,7 +1,20 @@
 //! Counts of what became of the meshes and triangles that were drawn.
 
 /// What became of the meshes that [`Camera::draw_counted`](crate::Camera::draw_counted) drew. Counts add up
-/// over calls, and saturate.
+/// over calls, and saturate. [`troubleshooting`](crate::guide::troubleshooting) has what each of them tells of a picture that is
+/// not as it should be, [`speed`](crate::guide::speed) estimates a frame from them.
+///
+/// ```
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::{Stats, prelude::*, shapes};
+/// static CUBE: shapes::Shape<24, 12> = shapes::cube(2.0, [2, 2]);
+/// # let (mut pixels, mut depth) = ([0; 64 * 64], [0; 64 * 64]);
+/// # let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 64), &mut pixels, &mut depth).unwrap();
+/// let camera = Camera::perspective(Turn::from_degrees(60), Size::new(64, 64)).at(Vec3::lit(0.0, 0.0, 5.0));
+/// let mut stats = Stats::default();
+/// camera.draw_counted(&CUBE.mesh(), &Pose::IDENTITY, &Material::gouraud(), &mut band, &mut stats);
+/// assert_eq!([stats.triangles, stats.culled, stats.drawn], [12, 10, 2]); // one face is seen straight on
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Meshes drawn, those left out included.

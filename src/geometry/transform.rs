@@ -209,7 +209,9 @@ impl ToClip {
             return true;
         }
         // The elements' upper halves: below 2¹³ · 2¹⁷ + 2¹⁶ · 2¹³.
-        let ([.., w], across) = (&self.rows, &self.rows[axis]);
+        let ([.., w], Some(across)) = (&self.rows, self.rows.get(axis)) else {
+            return true;
+        };
         let gradient: [u32; 3] = core::array::from_fn(|i| {
             (((across.elements[i] >> 16) << log2) - (w.elements[i] >> 16) * slope).unsigned_abs()
         });

@@ -4,7 +4,13 @@ use crate::num::{I16F16, bits_from_f32};
 use core::ops::{Add, Neg, Sub};
 use micromath::vector::F32x3;
 
-/// A point or direction in the world, in [`I16F16`] per axis. Sums saturate.
+/// A point or direction in the world, in units of the world, [`I16F16`] per axis: −32768 … 32767.99998. Sums saturate.
+///
+/// ```
+/// use fixel::Vec3;
+/// const DOOR: Vec3 = Vec3::lit(2.0, 0.0, -7.5);
+/// assert_eq!(DOOR + Vec3::lit(0.0, 1.0, 0.0), Vec3::lit(2.0, 1.0, -7.5));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vec3 {
     /// Right.

@@ -180,7 +180,9 @@ impl Needs {
         (first..end).all(|i| {
             let at = match i {
                 0 | 1 => scaling.uv(vertices, i),
-                _ => vertices.map(|vertex| i32::from(vertex.color[i - 2].to_bits()) << 8),
+                _ => vertices.map(|vertex| {
+                    vertex.color.get(i - 2).map_or(0, |channel| i32::from(channel.to_bits()) << 8)
+                }),
             };
             set(i - first, at, if i < 2 { scaling.rest(i) } else { 0 })
         })

@@ -122,9 +122,11 @@ impl TriangleSetup {
         };
         let bent = BentTriangle { needs, scaling: &scaling, slopes: &slopes, q, reciprocal };
         needs.each_attribute(&scaling, vertices, self.gray, |i, at, scale_log2| {
-            let rise = self.attributes[i].set_range(at, scale_log2);
+            let Some(attribute) = self.attributes.get_mut(i) else {
+                return false;
+            };
+            let rise = attribute.set_range(at, scale_log2);
             if self.straight {
-                let attribute = &mut self.attributes[i];
                 attribute.plane.origin = attribute.origin();
                 slopes.set_plane(&mut attribute.plane, rise);
             } else {

@@ -8,7 +8,8 @@ use embedded_graphics::geometry::{Point, Size};
 
 /// A camera and its place in the world.
 ///
-/// Unless placed otherwise it stands at the origin and looks along −z, with +x right and +y up.
+/// Unless placed otherwise it stands at the origin and looks along −z, with +x right and +y up:
+/// [`coordinates`](crate::guide::coordinates) has drawings.
 ///
 /// ```
 /// use fixel::prelude::*;
@@ -106,7 +107,7 @@ impl Camera {
         Self { projection: Projection::new(focal, orthographic, size), pose: Pose::IDENTITY }
     }
 
-    /// The same with the near plane at this distance, 1/16 before.
+    /// The same with the near plane at this distance, in units of the world; 1/16 before.
     ///
     /// Limited to 1/256 … 32767.99998, of orthographic cameras too; NaN is 1/256. [`Camera::try_near`] says so instead.
     ///
@@ -137,7 +138,7 @@ impl Camera {
         }
     }
 
-    /// The same with a far plane at this distance, beyond which nothing is drawn: nothing at all, unless the near plane is nearer.
+    /// The same with a far plane at this distance, in units of the world, beyond which nothing is drawn: nothing at all, unless the near plane is nearer.
     ///
     /// Limited to 2⁻¹⁶ … 32767.99998, which is none for a camera with perspective; NaN is 2⁻¹⁶. [`Camera::try_far`] says so
     /// instead.
@@ -232,8 +233,15 @@ impl Camera {
         self
     }
 
-    /// The same on a sphere around `target`, looking at it: at `yaw` 0 and `pitch` 0 from +z, with yaw
-    /// to the right and with pitch upwards.
+    /// The same on a sphere around `target`, looking at it from `distance` units of the world away: at `yaw` 0 and `pitch` 0
+    /// from +z, with yaw to the right and with pitch upwards.
+    ///
+    /// ```
+    /// use fixel::{embedded_graphics::geometry::Size, num::I16F16, prelude::*};
+    /// let camera = Camera::focal(100.0, Size::new(160, 120));
+    /// let right = camera.orbit(Vec3::ZERO, I16F16::lit("5"), Turn::from_degrees(90), Turn::ZERO);
+    /// assert_eq!(right.placement().translation, Vec3::lit(5.0, 0.0, 0.0));
+    /// ```
     #[must_use]
     pub fn orbit(mut self, target: Vec3, distance: I16F16, yaw: Turn, pitch: Turn) -> Self {
         self.pose.rotation = Pose::IDENTITY.rotated_x(-pitch).rotated_y(yaw).rotation;
@@ -242,7 +250,7 @@ impl Camera {
         self
     }
 
-    /// The same, flown by so much to the right, upwards and forwards as it is turned now.
+    /// The same, flown by so many units of the world to the right, upwards and forwards as it is turned now.
     #[must_use]
     pub fn flown(mut self, right: I16F16, up: I16F16, forward: I16F16) -> Self {
         let step = [right.to_bits().into(), up.to_bits().into(), -i64::from(forward.to_bits())];
@@ -280,7 +288,7 @@ impl Camera {
         self.projection.orthographic
     }
 
-    /// The distances of the near and the far plane; a perspective camera without a far plane has `I16F16::MAX`.
+    /// The distances of the near and the far plane, in units of the world; a perspective camera without a far plane has `I16F16::MAX`.
     #[must_use]
     pub const fn planes(&self) -> (I16F16, I16F16) {
         (self.projection.near, self.projection.far)
@@ -293,8 +301,8 @@ impl Camera {
         (I12F4::from_bits(x as i16), I12F4::from_bits(y as i16))
     }
 
-    /// The point of the world that is seen at a place of the screen, at a distance along the line of sight (its w);
-    /// saturated at the world's ends. Where on the ground a pixel lies, say, follows from two of them.
+    /// The point of the world that is seen at a place of the screen, at a distance along the line of sight (its w, in
+    /// units of the world); saturated at the world's ends. Where on the ground a pixel lies, say, follows from two of them.
     #[must_use]
     pub fn unproject(&self, x: I12F4, y: I12F4, distance: I16F16) -> Vec3 {
         let projection = &self.projection;

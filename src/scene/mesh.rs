@@ -167,6 +167,14 @@ impl<'a> Mesh<'a> {
 
     /// The triangles `start` … `end` − 1 alone (as far as there are such): a mesh with several materials is drawn
     /// part by part.
+    ///
+    /// ```
+    /// use fixel::{Mesh, shapes};
+    /// static CUBE: shapes::Shape<24, 12> = shapes::cube(2.0, [2, 2]);
+    /// const CUBE_MESH: Mesh = CUBE.mesh();
+    /// const FRONT: Mesh = CUBE_MESH.part(0, 2); // the face towards +z, two triangles
+    /// assert_eq!(FRONT.triangles().len(), 2);
+    /// ```
     #[must_use]
     pub const fn part(self, start: usize, end: usize) -> Self {
         const fn part<T>(triangles: &[T], start: usize, end: usize) -> &[T] {

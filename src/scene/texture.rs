@@ -4,9 +4,9 @@ use core::fmt;
 
 /// A borrowed RGB565 picture of 2^w × 2^h texels, rows from the top, w and h from 0 to 10.
 ///
-/// Texel (i, j) covers the coordinates i … i + 1, j … j + 1. What lies beyond the borders is the material's choice: the texture again
-/// and again ([`Material::textured`](crate::Material::textured)), its border texels
-/// ([`Material::clamped`](crate::Material::clamped)), or the texture turned round at each border
+/// Texel (i, j) covers the coordinates i … i + 1, j … j + 1: [`coordinates`](crate::guide::coordinates) has a drawing. What lies
+/// beyond the borders is the material's choice: the texture again and again ([`Material::textured`](crate::Material::textured)), its
+/// border texels ([`Material::clamped`](crate::Material::clamped)), or the texture turned round at each border
 /// ([`Material::mirrored`](crate::Material::mirrored)).
 ///
 /// ```

@@ -6,6 +6,13 @@ use crate::num::{I4F12, I12F4, bits_or_max};
 /// A vertex of a mesh, 16 bytes.
 ///
 /// Any bytes are one, and it is [`Pod`](bytemuck::Pod): `bytemuck` casts bytes to vertices, and back.
+///
+/// ```
+/// use fixel::Vertex;
+/// // Mesh units; texels, v down; a direction of length 1; red, green and blue.
+/// const CORNER: Vertex = Vertex::new(-1.0, 0.5, 0.0).uv(0, 32).normal(0.0, 0.6, 0.8).color(255, 200, 40);
+/// assert_eq!(CORNER.position[1], 0.5);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct Vertex {

@@ -42,13 +42,14 @@ impl Perspective<'_> {
             let far = self.place(x, near.y);
             self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(near), attribute.at(&far)]);
         } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
-            for (i, attribute) in setup.attributes.iter().enumerate().take(self.units.count) {
+            let all = setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
+            for (i, (attribute, line)) in all.take(self.units.count) {
                 let (above, up) = (attribute.at(near), self.units.up(i, attribute));
                 let (from_horizon, log2) = from_horizon(attribute, above);
                 let u = attribute.least.wrapping_add(above);
                 let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
                 let at = (u << up).wrapping_sub(slope << ONE_LOG2) as u32;
-                self.curve.lines[i] = Linear { at, slope };
+                *line = Linear { at, slope };
             }
         } else if steps > 0 {
             self.set_by_slope(near, rises, steps, w_step, &way);
@@ -116,12 +117,22 @@ impl Perspective<'_> {
         }
     }
 
+    /// Sets the line of attribute `i`, of which there are as many as lines.
+    #[inline]
+    fn set_line(&mut self, i: usize, line: Linear) {
+        if let Some(of_attribute) = self.curve.lines.get_mut(i) {
+            *of_attribute = line;
+        }
+    }
+
     /// One pixel.
     #[inline(never)]
     fn set_pixel(&mut self, at: &dyn Fn(&Attribute) -> i32) {
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
+        for (attribute, line) in
+            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count)
+        {
             let u = attribute.least.wrapping_add(at(attribute));
-            self.curve.lines[i] = Linear { at: (u << attribute.scale_log2) as u32, slope: 0 };
+            *line = Linear { at: (u << attribute.scale_log2) as u32, slope: 0 };
         }
     }
 
@@ -140,7 +151,7 @@ impl Perspective<'_> {
                 Way::Chords => {
                     let up = self.units.up(i, attribute);
                     let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
-                    self.curve.lines[i] = Linear { at: (u << up) as u32, slope };
+                    self.set_line(i, Linear { at: (u << up) as u32, slope });
                 }
                 _ => self.set_general(i, u, attribute.scale_log2, slope, log2),
             }
@@ -162,8 +173,10 @@ impl Perspective<'_> {
         let far = above.wrapping_add(slope.wrapping_mul(steps));
         let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
         let (at, step) = attribute.along_inside((first as u32, step), steps);
-        self.curve.lines[i] =
-            Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+        self.set_line(
+            i,
+            Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 },
+        );
     }
 
     /// The general forms. The change over a pixel is `slope` · 2^−`log2`; it is kept as 15 bits and a shift, as t has 16.
@@ -179,8 +192,10 @@ impl Perspective<'_> {
             0..32 => (slope, down as u8),
             _ => (0, 0),
         };
-        self.curve.lines[i] = Linear { at: (u << scale_log2) as u32, slope };
-        self.curve.down[i] = down;
+        self.set_line(i, Linear { at: (u << scale_log2) as u32, slope });
+        if let Some(of_line) = self.curve.down.get_mut(i) {
+            *of_line = down;
+        }
     }
 
     /// From the values at both ends: so that the far one stays in the range, whatever the planes say.
@@ -228,7 +243,7 @@ impl Perspective<'_> {
                     let up = self.units.up(i, attribute);
                     let slope = scaled_wide(product, t.zeros as i32 - 62 + up as i32);
                     let one = if matches!(way, Way::Table) { slope << ONE_LOG2 } else { 0 };
-                    self.curve.lines[i] = Linear { at: (u << up).wrapping_sub(one) as u32, slope };
+                    self.set_line(i, Linear { at: (u << up).wrapping_sub(one) as u32, slope });
                 }
             }
         }

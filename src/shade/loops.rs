@@ -371,7 +371,8 @@ pub(super) fn at_once<const CHORDS: bool, F: PixelFormat>(
 /// The pixels of a run's chords, and 1 to 8 of the last one, whose end is the run's.
 #[inline(always)]
 fn eights_and_last<W>(pixels: &mut [W]) -> (&mut [[W; CHORD as usize]], &mut [W]) {
-    let (before, last) = pixels.split_at_mut(pixels.len().saturating_sub(1) & !(CHORD as usize - 1));
+    let at = pixels.len().saturating_sub(1) & !(CHORD as usize - 1);
+    let (before, last) = pixels.split_at_mut_checked(at).unwrap_or_default();
     (before.as_chunks_mut().0, last)
 }
 

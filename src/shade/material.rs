@@ -25,7 +25,7 @@ use embedded_graphics::prelude::RawData;
 ///
 /// A material is a small value; it borrows its texture and nothing else. The type says which loops draw it, so that only
 /// the loops that a program names are in its flash: `K` is the [kind](Kind) of material, `Q` the [quality](Quality), and `L`
-/// how it is [laid](Layer) over what is there.
+/// how it is [laid](Layer) over what is there. [`surfaces`](crate::guide::surfaces) shows what the builders do.
 ///
 /// ```
 /// use fixel::material::Gouraud;

@@ -44,6 +44,7 @@ use super::units::{Form, Units};
 use crate::math::recip::looked_up;
 use crate::num::{IS_ARMV6M, mul_17, mul_high, normalise};
 use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
+use core::hint::black_box;
 
 /// The step of w, 32 fraction bits, where the horizon is 176 pixels away.
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
@@ -163,11 +164,12 @@ impl<'a> Perspective<'a> {
                     way => break way,
                 }
             };
-            let (run, rest);
-            if near_is_right {
-                (rest, run) = all.split_at_mut(all.len() - count);
-            } else {
-                (run, rest) = all.split_at_mut(count);
+            let at = if near_is_right { all.len() - count } else { count };
+            let Some((run, rest)) = all.split_at_mut_checked(at) else {
+                return;
+            };
+            let (run, rest) = if near_is_right { (rest, run) } else { (run, rest) };
+            if !near_is_right {
                 x += count as i32;
             }
             match way {
@@ -265,6 +267,7 @@ impl<'a> Perspective<'a> {
         for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count) {
             let (at, slope) = setup.along(i, [x, y], steps);
             *line = Linear { at: at as u32, slope };
+            black_box(());
         }
         Way::Straight
     }
@@ -272,15 +275,16 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn straight(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
-        for (i, attribute) in setup.attributes.iter().enumerate().take(self.units.count) {
+        // Not unrolled.
+        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count) {
             let plane = setup.at(&attribute.plane, x, y);
             if setup.leans && steps > 0 && attribute.leaves(plane, steps as i32) {
                 // Up to where it leaves its range an exact attribute stays so.
                 return Way::None;
             }
             let (at, step) = attribute.along(plane, steps as i32);
-            self.curve.lines[i] =
-                Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+            *line = Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+            black_box(());
         }
         Way::Straight
     }
@@ -307,9 +311,10 @@ fn level(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, is_v: bo
 }
 
 /// (u − u₀)·q′ in units of the plane: what the step of (u − u₀)·q is more than q times the step of u. q′ is less than 2¹².
+#[cold]
 #[inline(never)]
 fn bend_of_level(attribute: &Attribute, above: u32, q_step: i32) -> i32 {
-    let offset = (above as i32).clamp(0, attribute.range as i32).wrapping_add(attribute.low);
+    let offset = (above as i32).max(0).min(attribute.range as i32).wrapping_add(attribute.low);
     let up = attribute.shift.clamp(0, 19);
     let size = mul_high(offset << (attribute.shift - up), q_step.unsigned_abs() << up);
     if q_step < 0 { -size } else { size }

@@ -145,8 +145,10 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
             for (i, (axis, side)) in axes.iter().zip(&self.sides).enumerate() {
                 part.lines[i] = self.inside(curve.lines[i], axis.cell, side, first, way);
             }
-            let piece;
-            (piece, rest) = rest.split_at_mut((next - first) as usize);
+            let Some((piece, others)) = rest.split_at_mut_checked((next - first) as usize) else {
+                return;
+            };
+            rest = others;
             if way == Way::Straight {
                 self.straight_piece(piece, &mut part);
             } else {

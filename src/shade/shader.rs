@@ -32,6 +32,26 @@ impl Varying {
 }
 
 /// What a [`Shader`] needs to know of a pixel.
+///
+/// ```
+/// use fixel::embedded_graphics::pixelcolor::Rgb565;
+/// use fixel::{Fragment, Inputs, QuarterPixel, Reach, Shader, Varying};
+/// /// Every other row of the screen, as on an old tube.
+/// struct Rows;
+/// impl Shader<Rgb565> for Rows {
+///     type Quality = QuarterPixel;
+///     const REACH: Reach = Reach::Place;
+///     fn inputs(&self) -> Inputs {
+///         Inputs::None
+///     }
+///     fn color(&self, _: &Varying) -> u16 {
+///         0x07e0
+///     }
+///     fn fragment(&self, fragment: &Fragment<u16>) -> Option<u16> {
+///         (fragment.place[1] % 2 == 0).then(|| self.color(&fragment.varying)) // `None`: left out
+///     }
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     /// Its attributes: the fastest, and all that [materials](crate::Material) need.

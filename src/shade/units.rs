@@ -6,6 +6,8 @@
 
 use crate::raster::{ATTRIBUTES, Attribute, TriangleSetup};
 
+const _: () = assert!(ATTRIBUTES <= 8);
+
 /// How a fill takes attributes that follow perspective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
@@ -31,7 +33,7 @@ pub struct Units {
     /// Of the exact form: an attribute at a pixel of a sliver, I16F16. By reference, so that programs without it do not link it.
     pub(super) in_sliver: Option<InSliver>,
     /// By how much I16F16 is to be shifted left: 16 − a. Not of the general forms.
-    up: [u8; ATTRIBUTES],
+    up: [u8; 8],
 }
 
 impl Units {
@@ -43,12 +45,12 @@ impl Units {
         } else {
             (Form::General, None)
         };
-        Self { form, count, in_sliver, up: [0; ATTRIBUTES] }
+        Self { form, count, in_sliver, up: [0; 8] }
     }
 
     /// Modular, with these numbers of integer bits.
     pub(crate) fn modular<const N: usize>(integer_bits: [u32; N]) -> Self {
-        let mut up = [0; ATTRIBUTES];
+        let mut up = [0; 8];
         for (up, bits) in up.iter_mut().zip(integer_bits) {
             *up = 16 - bits as u8;
         }
@@ -58,6 +60,6 @@ impl Units {
     /// Bits to shift attribute `i` left: to the unit of the fill, and by its `scale_log2`.
     #[inline]
     pub(crate) fn up(&self, i: usize, attribute: &Attribute) -> u32 {
-        (u32::from(self.up[i]) + attribute.scale_log2) & 31
+        (u32::from(self.up[i & 7]) + attribute.scale_log2) & 31
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! - In: a baked model.
 //! - Out: cycles on a Cortex-M0+ and a Cortex-M4F.
-//! - Assumes: the figures are those of `src/cost.md`; a test looks.
+//! - Assumes: the figures are those of `src/guide/cost.md`; a test looks.
 
 use crate::baked::{Baked, BakedMaterial, Paint};
 use crate::view;
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn the_figures_are_those_of_the_page() {
-        let page = include_str!("../../../src/cost.md");
+        let page = include_str!("../../../src/guide/cost.md");
         let plain = |label: &str, cycles: Cycles| {
             let row = format!("| {label} | {} | {} |", cycles[0], cycles[1]);
             assert!(page.contains(&row), "the page has no {row}");

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// A display list is full; it is as it was before the draw that did not fit.
+/// A display list is full; it is as it was before the draw that did not fit. [`memory`](crate::guide::memory) has how to find the
+/// numbers that a scene needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CapacityError {
     /// Of vertices, `V`: of those that stay, and all of the mesh that is drawn.

@@ -18,6 +18,34 @@ use embedded_graphics::primitives::Rectangle;
 /// only the rest is drawn and sent. That is exact as long as all else stays the same. If the background changes, or if
 /// anything else was sent to the display, call [`Changes::everything`]. If what you draw on top changes, [`Changes::mark`]
 /// both where it was and where it is.
+///
+/// ```
+/// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+/// use fixel::{Changes, prelude::*, shapes};
+/// static CUBE: shapes::Shape<24, 12> = shapes::cube(1.0, [2, 2]);
+/// const CUBE_MESH: Mesh = CUBE.mesh();
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let (mut pixels, mut depth) = ([0; 64 * 8], [0; 64 * 8]);
+/// let mut band = Band::<Rgb565, Depth16>::new(Size::new(64, 8), &mut pixels, &mut depth)?;
+/// let camera = Camera::perspective(Turn::from_degrees(60), Size::new(64, 64)).at(Vec3::lit(0.0, 0.0, 5.0));
+/// let mut memory = ListMemory::<24, 12>::new();
+/// let mut changes = Changes::<8>::new(); // as many bands as the screen has
+/// let mut flushed = Default::default();
+/// for degrees in [0, 5] {
+///     let pose = Pose::IDENTITY.rotated_y(Turn::from_degrees(degrees));
+///     let mut list = DisplayList::<Rgb565, Depth16, 1>::new(&mut memory);
+///     camera.draw(&CUBE_MESH, &pose, &Material::flat(Rgb565::RED), &mut list)?;
+///     flushed = list.render_changed(64, &Rgb565::BLACK, &mut band, &mut changes, |area, band| {
+///         // display.fill_contiguous(&area, band.colors_in(&area))
+/// #       assert_eq!(band.colors_in(&area).count() as u32, area.size.width * area.size.height);
+///         Ok::<_, core::convert::Infallible>(())
+///     })?;
+/// }
+/// assert!(flushed.bands <= 3); // of the second frame: those with the cube
+/// assert!(flushed.pixels < 500); // of 4096
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Changes<const BANDS: usize> {
     /// For each band the area that the last frame drew to.

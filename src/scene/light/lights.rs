@@ -17,7 +17,8 @@ use core::{array, fmt};
 
 const MAX: usize = 4;
 
-/// A light in the world.
+/// A light in the world: a sun or a lamp. Its colour is red, green and blue, 0 … 255, of what arrives where a surface faces it;
+/// places and ranges are in units of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
     source: Source,
@@ -47,7 +48,7 @@ impl Light {
 
     /// Light from a point; `color` is what arrives where a surface faces it from close by.
     ///
-    /// At a distance d that is multiplied by (1 − d²/`range`²)²: 1 at the light, 9/16 at half the range, exactly 0
+    /// At a distance d (as `range` in units of the world) that is multiplied by (1 − d²/`range`²)²: 1 at the light, 9/16 at half the range, exactly 0
     /// from `range` on, without an edge. A range of 0 or less gives no light, and the place where
     /// the light itself is gets none.
     #[must_use]
@@ -174,7 +175,20 @@ impl fmt::Display for LightsError {
 
 impl core::error::Error for LightsError {}
 
-/// [`Lights`] as they stand around one mesh, in its pose.
+/// [`Lights`] as they stand around one mesh, in its pose: for those who light vertices of their own. [Lit](crate::Material::lit)
+/// materials do it by themselves.
+///
+/// ```
+/// use fixel::{Light, Lights, Normal, Pose, Vec3, Vertex};
+/// let suns = [Light::directional(Vec3::lit(0.0, -1.0, 0.0), [150; 3])]; // straight down
+/// let lights = Lights::new([50; 3], &suns);
+/// let pose = Pose::IDENTITY;
+/// let around = lights.in_mesh_space(&pose);
+/// let lit = |vertex: Vertex| around.at(vertex.position, Normal::from(vertex.normal), false)[0].to_num::<u8>();
+/// let floor = Vertex::new(0.0, 0.0, 0.0).normal(0.0, 1.0, 0.0);
+/// assert_eq!(lit(floor), 200); // it faces the light
+/// assert_eq!(lit(floor.normal(0.0, -1.0, 0.0)), 50); // a ceiling: ambient light alone
+/// ```
 #[derive(Clone, Debug)]
 pub struct Lighting<'p> {
     lights: [Local; MAX],

@@ -3,7 +3,7 @@
 use super::builder::{Builder, length, part};
 use super::shape::{Counts, Shape};
 
-/// A rectangle in the plane z = 0 that faces +z, the texture's top towards +y.
+/// A rectangle in the plane z = 0 that faces +z, the texture's top towards +y; `width` and `height` in mesh units.
 #[must_use]
 pub const fn quad(width: f32, height: f32, texels: [u16; 2]) -> Shape<4, 2> {
     grid(width, height, 1, 1, texels)
@@ -39,7 +39,7 @@ pub const fn grid<const V: usize, const T: usize>(
     shape.finish()
 }
 
-/// A cube, each face with the texture from corner to corner: upright on the four sides, and on top and
+/// A cube of `edge` mesh units, each face with the texture from corner to corner: upright on the four sides, and on top and
 /// bottom with the edge towards −z and +z uppermost. Faces are flat: 24 vertices.
 #[must_use]
 pub const fn cube(edge: f32, texels: [u16; 2]) -> Shape<24, 12> {

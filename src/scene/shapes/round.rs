@@ -52,7 +52,7 @@ pub const fn uv_sphere<const V: usize, const T: usize>(
 }
 
 /// A torus around the z axis, without texture coordinates: `rings` ≥ 3 of `sides` ≥ 3 vertices each, the first in
-/// the half plane of +x; `major` from the middle to the middle of the tube, `minor` the tube's radius.
+/// the half plane of +x; `major` from the middle to the middle of the tube, `minor` the tube's radius, in mesh units.
 ///
 /// `rings` · `sides` vertices, 2 · `rings` · `sides` triangles: no vertex is there twice.
 #[must_use]
@@ -127,7 +127,7 @@ const fn torus_vertices<const V: usize, const T: usize>(
     }
 }
 
-/// A cylinder around the y axis with `sides` ≥ 3 and two flat caps.
+/// A cylinder around the y axis with `sides` ≥ 3 and two flat caps; `radius` and `height` in mesh units.
 ///
 /// The texture goes once around it, its middle towards +z, its ends joined at −z. A cap shows the largest circle in
 /// the texture, of `cap` texels, with the edge towards −z (above) and +z (below) uppermost.

@@ -36,6 +36,9 @@ const COLORS: &str = "fixel::raster::triangle::TriangleSetup>::set_small_colors"
 const PERSPECTIVE: &str = "fixel::shade::perspective::Perspective>::near_horizon";
 const EXACT_IN_SLIVERS: &str = "fixel::raster::triangle::TriangleSetup>::resolve_in_sliver";
 
+/// Nothing that a program draws at once can panic: what would begin one is not linked.
+const PANIC: &str = "core::panicking::panic";
+
 /// What a program must not link. `all` has each of them, which shows that they are still called so.
 const FORBIDDEN: [(&str, &[&str]); 4] = [
     (
@@ -204,6 +207,10 @@ fn the_flash_of_the_small_programs_is_that_of_the_table_and_they_link_only_what_
             let (_, names) = now.iter().find(|(row, _)| is_it(row)).expect("it was built");
             names.iter().map(|name| &**name).filter(|name| name.contains(what)).collect()
         };
+        for program in PROGRAMS {
+            let names = linked(program, PANIC);
+            assert!(names.is_empty(), "{program} for {target} can panic:\n{}", names.join("\n"));
+        }
         for (program, forbidden) in FORBIDDEN {
             for what in forbidden {
                 let names = linked(program, what);
