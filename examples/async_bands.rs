@@ -4,7 +4,7 @@
 //! with two, says how long both took, and writes what the display shows to `out/async.png`.
 //!
 //! On a board the bus is the HAL's `SpiDevice`, the display a driver like [`Display`] here, and the executor that of embassy or
-//! RTIC; [`frame`] stays as it is.
+//! RTIC; [`frame`] stays as it is. `examples/drivers` has it as `AsyncRows`, for displays that `lcd-async` sets up.
 
 #[path = "support/picture.rs"]
 #[expect(dead_code, reason = "this example makes its own texture and no film")]

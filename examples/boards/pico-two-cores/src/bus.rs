@@ -7,15 +7,21 @@ use core::cell::RefCell;
 
 use critical_section::Mutex;
 use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::spi::SpiBus;
+use embedded_hal_bus::spi::{ExclusiveDevice, NoDelay};
+use fixel::embedded_graphics::{prelude::*, primitives::Rectangle};
+use fixel_drivers::Rows;
 use heapless::Deque;
+use mipidsi::{Builder, interface::SpiInterface, models::ST7789, options::ColorInversion};
 use rp2040_hal::dma::single_buffer::{Config, Transfer};
 use rp2040_hal::dma::{CH0, Channel, SingleChannel};
-use rp2040_hal::gpio::bank0::{Gpio16, Gpio18, Gpio19};
+use rp2040_hal::gpio::bank0::{Gpio16, Gpio17, Gpio18, Gpio19};
 use rp2040_hal::gpio::{FunctionSio, FunctionSpi, Pin, PullDown, SioOutput};
 use rp2040_hal::pac::{SPI0, interrupt};
 use rp2040_hal::spi::{Enabled, Spi};
 
-use crate::st7789::St7789;
+use crate::frames::SCREEN;
 use crate::{BANDS, CORES};
 
 /// The pixels of a band.
@@ -25,6 +31,7 @@ pub(crate) type Pixels = &'static mut [u16];
 type Lines = (Pin<Gpio19, FunctionSpi, PullDown>, Pin<Gpio18, FunctionSpi, PullDown>);
 pub(crate) type Wire = Spi<Enabled, SPI0, Lines, 8>;
 pub(crate) type DataCommand = Pin<Gpio16, FunctionSio<SioOutput>, PullDown>;
+pub(crate) type Select = Pin<Gpio17, FunctionSio<SioOutput>, PullDown>;
 
 /// What the channel does.
 enum State {
@@ -36,7 +43,8 @@ enum State {
 struct Bus {
     /// Always there between two calls.
     state: Option<State>,
-    display: St7789<DataCommand>,
+    data_command: DataCommand,
+    select: Select,
     /// The band of the frame that is sent next.
     next: usize,
     /// For each core what it has drawn, in order.
@@ -52,24 +60,36 @@ fn with_bus<R>(work: impl FnOnce(&mut Bus) -> R) -> Option<R> {
     critical_section::with(|section| BUS.borrow_ref_mut(section).as_mut().map(work))
 }
 
+/// The display on its bus, for a driver or for [`Rows`].
+fn device<'a>(
+    wire: &'a mut Wire,
+    select: &'a mut Select,
+) -> ExclusiveDevice<&'a mut Wire, &'a mut Select, NoDelay> {
+    let Ok(device) = ExclusiveDevice::new_no_delay(wire, select);
+    device
+}
+
 /// Sets up the display and takes charge of it, with memory for a second band of each core.
 ///
 /// The core that calls this has to unmask `DMA_IRQ_0`.
 pub(crate) fn start(
     mut channel: Channel<CH0>,
     mut wire: Wire,
-    data_command: DataCommand,
+    (mut data_command, mut select): (DataCommand, Select),
     delay: &mut impl DelayNs,
     spare: [Pixels; CORES],
 ) {
-    let Ok(display) = St7789::new(&mut wire, data_command, delay);
+    let mut buffer = [0; 16];
+    let interface = SpiInterface::new(device(&mut wire, &mut select), &mut data_command, &mut buffer);
+    let builder = Builder::new(ST7789, interface).invert_colors(ColorInversion::Inverted);
+    builder.init(delay).expect("the bus takes all bytes");
     channel.enable_irq0();
     let mut free = [const { Deque::new() }; CORES];
     for (free, pixels) in free.iter_mut().zip(spare) {
         let _ = free.push_back(pixels); // it is empty
     }
     let state = Some(State::Idle(channel, wire));
-    let bus = Bus { state, display, next: 0, drawn: [const { Deque::new() }; CORES], free };
+    let bus = Bus { state, data_command, select, next: 0, drawn: [const { Deque::new() }; CORES], free };
     critical_section::with(|section| BUS.replace(section, Some(bus)));
 }
 
@@ -115,7 +135,12 @@ impl Bus {
         self.state = Some(match self.drawn[core].pop_front() {
             Some(pixels) => {
                 if self.next == 0 {
-                    let Ok(()) = self.display.start_frame(&mut wire);
+                    // The window is the whole screen: its bands follow each other, with the display selected.
+                    let Ok(()) = wire.flush(); // the channel is done before the last bits are out
+                    let mut rows = Rows::new(device(&mut wire, &mut self.select), &mut self.data_command);
+                    let screen = Rectangle::new(Point::zero(), SCREEN);
+                    rows.open(screen).expect("the bus takes all bytes");
+                    let Ok(()) = self.select.set_low();
                 }
                 self.next = (self.next + 1) % BANDS;
                 let bytes: &'static mut [u8] = bytemuck::cast_slice_mut(pixels);

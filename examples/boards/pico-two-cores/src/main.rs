@@ -1,4 +1,4 @@
-//! fixel on both cores of an RP2040: a torus on an ST7789 of 240×320 pixels.
+//! fixel on both cores of an RP2040: the Earth turns on an ST7789 of 240×320 pixels.
 //!
 //! Core 0 records each frame as a display list. Then both cores render its bands, core 0 the even ones and core 1 the odd ones,
 //! while a DMA channel sends those that are drawn. See README.md for the wiring.
@@ -7,12 +7,12 @@
 #![no_main]
 
 mod bus;
+mod frames;
+#[path = "../../pico/src/scene.rs"]
 mod scene;
-mod st7789;
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use embedded_hal::digital::OutputPin;
 use embedded_hal::spi::MODE_0;
 use fixel::embedded_graphics::prelude::*;
 use fixel::{Band, Depth16};
@@ -25,7 +25,8 @@ use rp2040_hal::multicore::{Multicore, Stack};
 use rp2040_hal::{Sio, Spi, Timer, Watchdog, pac};
 use static_cell::ConstStaticCell;
 
-use scene::{Format, SCREEN};
+use frames::{Format, SCREEN};
+use scene::Scene;
 
 const CORES: usize = 2;
 /// Rows of a band.
@@ -80,7 +81,7 @@ fn report(counter: &AtomicU32, number: u32) {
 struct Painter {
     core: usize,
     band: Band<'static, Format, Depth16>,
-    sky: fixel::Gradient,
+    scene: Scene,
 }
 
 impl Painter {
@@ -88,16 +89,16 @@ impl Painter {
         let size = Size::new(SCREEN.width, ROWS as u32);
         let band =
             Band::new(size, PIXELS[core].take(), DEPTH[core].take()).expect("the memory is of this size");
-        Self { core, band, sky: scene::sky() }
+        Self { core, band, scene: Scene::new(SCREEN) }
     }
 
     /// Draws this core's bands of the frame, one while the one before is sent.
     fn frame(&mut self) {
-        let list = scene::list().read();
+        let list = frames::list().read();
         for number in (self.core..BANDS).step_by(CORES) {
             let top = (number * ROWS) as u32;
             self.band.move_to(top);
-            self.band.clear_to(&self.sky);
+            self.band.clear_to(&self.scene.sky);
             list.render(top, &mut self.band);
             let mut pixels = bus::free(self.core);
             self.band.swap_pixels(&mut pixels).expect("all bands are of one size");
@@ -135,15 +136,14 @@ fn main() -> ! {
     let pins = Pins::new(chip.IO_BANK0, chip.PADS_BANK0, sio.gpio_bank0, &mut chip.RESETS);
     let mut delay = Timer::new(chip.TIMER, &mut chip.RESETS, &clocks);
 
-    // The display is alone on its bus: selected for good.
-    let Ok(()) = pins.gpio17.into_push_pull_output().set_low();
     let lines = (pins.gpio19.into_function(), pins.gpio18.into_function());
     let wire =
         Spi::new(chip.SPI0, lines).init(&mut chip.RESETS, clocks.peripheral_clock.freq(), BUS.Hz(), MODE_0);
     let data_command = pins.gpio16.into_push_pull_output();
+    let select = pins.gpio17.into_push_pull_output();
     let channel = chip.DMA.split(&mut chip.RESETS).ch0;
     let spare = [2, 3].map(|i| PIXELS[i].take().as_mut_slice());
-    bus::start(channel, wire, data_command, &mut delay, spare);
+    bus::start(channel, wire, (data_command, select), &mut delay, spare);
     #[expect(unsafe_code, reason = "unmasking an interrupt is")]
     // SAFETY: Nothing here relies on the interrupt being masked: what its handler shares is behind a critical section.
     unsafe {
@@ -160,7 +160,10 @@ fn main() -> ! {
     let mut painter = Painter::new(0);
     for frame in (1..=u32::MAX).cycle() {
         // Core 1 waits: nobody reads the list.
-        scene::record(frame, &mut scene::list().write()).expect("the list has room for the torus");
+        let mut list = frames::list().write();
+        list.clear();
+        painter.scene.record(frame, &mut list).expect("it has room for the globe");
+        drop(list);
         report(&RECORDED, frame);
         painter.frame();
         wait_for(&DRAWN, frame);
