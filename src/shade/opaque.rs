@@ -48,13 +48,19 @@ impl<W: Copy> DrawRun<W> for Even<W> {
 
     #[inline(always)]
     fn draw_run(&mut self, _: i32, _: i32, pixels: &mut [W]) {
-        pixels.fill(self.0);
+        fill(pixels, self.0);
     }
 
     #[inline(always)]
     fn again(&mut self) -> Self {
         Self(self.0)
     }
+}
+
+/// Not inlined: among the rows' loop it would have no registers, and take twice as long on a Cortex-M0+.
+#[inline(never)]
+fn fill<W: Copy>(pixels: &mut [W], word: W) {
+    pixels.fill(word);
 }
 
 /// By a fill, and fog on it in place.
