@@ -20,8 +20,8 @@ use crate::geometry::ScreenVertex;
 use crate::num::wide;
 
 impl TriangleSetup {
-    /// [`UvCode::complete`](super::needs::UvCode): makes u and v of a triangle that is not small lean, or limits them. `fraction_bits` are those of the slopes in
-    /// [`setup`](super::setup), if u and v are exactly straight.
+    /// [`UvCode::complete`](super::needs::UvCode): makes u and v of a triangle that is not small lean, or limits them.
+    /// `fraction_bits` are those of the slopes in [`slopes`](super::slopes), if u and v are exactly straight.
     ///
     /// Where they are not, u may repeat within four pixels somewhere: so twice the inset.
     #[inline(never)]

@@ -196,7 +196,7 @@ by_value!(Surface, Look, Painter);
 impl<F: PixelFormat, D: DepthFormat> fmt::Debug for Surface<'_, F, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Surface")
-            .field("inputs", &self.look.traits.inputs)
+            .field("inputs", &self.look.traits.inputs())
             .field("cull", &self.cull)
             .finish_non_exhaustive()
     }

@@ -13,8 +13,7 @@ use crate::raster::{InputCode, Needs, Packing, Straight};
 /// What set-up has to know of a shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Traits {
-    pub(crate) inputs: Inputs,
-    /// What sets them up.
+    /// What it reads, and what sets that up.
     code: &'static InputCode,
     straight: Straight,
     every_pixel: bool,
@@ -29,7 +28,6 @@ impl Traits {
     #[inline(always)]
     pub(crate) fn of<F: PixelFormat, S: Shader<F>>(shader: &S) -> Self {
         Self {
-            inputs: shader.inputs(),
             code: InputCode::of(shader.inputs()),
             straight: S::Quality::STRAIGHT,
             every_pixel: S::Quality::EVERY_PIXEL,
@@ -37,6 +35,12 @@ impl Traits {
             scale_log2: shader.texture_scale().min(8) as u8,
             packed_log2: shader.packed_log2().map(|log2| log2.map(|log2| log2 as u8)),
         }
+    }
+
+    /// Which attributes it reads.
+    #[inline]
+    pub(crate) fn inputs(&self) -> Inputs {
+        self.code.inputs
     }
 
     /// The same with only the first channel of colours read.
@@ -50,8 +54,8 @@ impl Traits {
     pub(crate) fn needs<F: PixelFormat>(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
         let scale = self.scale_log2.into();
         let packed_log2 = self.packed_log2.map(|log2| log2.map(u32::from));
-        let packing = Packing::new(packed_log2, scale, self.inputs);
-        let of_small = Packing::new(packed_log2, 0, self.inputs);
+        let packing = Packing::new(packed_log2, scale, self.inputs());
+        let of_small = Packing::new(packed_log2, 0, self.inputs());
         Needs {
             code: self.code,
             straight: if is_orthographic { Straight::Always } else { self.straight },

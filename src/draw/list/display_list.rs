@@ -239,7 +239,7 @@ fn render<F: PixelFormat, D: DepthFormat>(
             draw_folded(view, triangle, draw, &mut raster);
             continue;
         }
-        view.corners(triangle, draw.look.traits.inputs, draw.vertices, &mut corners);
+        view.corners(triangle, draw.look.traits.inputs(), draw.vertices, &mut corners);
         raster.draw_clockwise(corners.each_ref());
     }
 }
@@ -254,7 +254,7 @@ fn draw_folded<F: PixelFormat, D: DepthFormat>(
     raster: &mut Raster<'_, '_, F, D>,
 ) {
     let mut corners = [ScreenVertex::default(); MOST_CORNERS];
-    let polygon = view.polygon(folded, draw.look.traits.inputs, draw.vertices, &mut corners);
+    let polygon = view.polygon(folded, draw.look.traits.inputs(), draw.vertices, &mut corners);
     raster.draw_folded(polygon, draw.cull, &mut ());
 }
 

@@ -24,7 +24,7 @@ impl<'p> Style<'p> {
     ) -> Self {
         let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
         let coloring = surface.coloring.colors(lights, pose);
-        Self { cull, inputs: surface.look.traits.inputs, coloring }
+        Self { cull, inputs: surface.look.traits.inputs(), coloring }
     }
 
     pub(super) fn has_color(&self) -> bool {
