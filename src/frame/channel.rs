@@ -6,7 +6,7 @@
 
 /// A level of 0 … `N` as one of 0 … `M`: n · M / N to the nearest.
 #[inline(always)]
-pub(super) fn nearest<const N: u32, const M: u32>(n: u32) -> u32 {
+pub(super) const fn nearest<const N: u32, const M: u32>(n: u32) -> u32 {
     if N == M {
         return n;
     }

@@ -4,7 +4,9 @@
 //! - Out: its word, which is one pixel in memory.
 //! - Assumes: nothing.
 
+use super::channel::{nearest, split};
 use super::threshold::{Quantize, Threshold};
+use crate::num::IS_ARMV6M;
 use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{PixelColor, Rgb565, Rgb888, raw::RawU16};
 use embedded_graphics::prelude::RawData;
@@ -22,9 +24,8 @@ use embedded_graphics::prelude::RawData;
 /// | `Rgb666` | `[u8; 3]`: red, green, blue, each in the upper six bits of its byte | displays in their mode of 18 bits (ILI9341, ILI9488) |
 /// | `Gray8` | `u8`, the luma of ITU-R BT.601 | grey and monochrome displays, [dithered](crate::Band::dithered); the least memory |
 ///
-/// Each holds the nearest to what it is given, and to texels in light, to half a step of its channel. Only `Rgb565` cuts them: in it a
-/// channel of 8 bits is at most 0.86 steps too dark, and a texel in light 1.1 steps off. Rounding would take 22 / 9 cycles a pixel of three channels, on a Cortex-M0+ / M4F; to see
-/// all that 16 bits can show, draw in `Rgb888` and [dither](crate::Band::dithered). [`guide::cost`](crate::guide::cost) has what pixels of each take.
+/// Each holds the nearest to what it is given, and to texels in light: half a step of its channel is the most that it is off. To see
+/// more than 16 bits can show, draw in `Rgb888` and [dither](crate::Band::dithered). [`guide::cost`](crate::guide::cost) has what pixels of each take.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a format that pixels are drawn in",
     label = "a band's pixels are `Rgb565`, `Bgr565`, `Rgb666`, `Rgb888`, `Bgr888` or `Gray8`",
@@ -51,17 +52,23 @@ pub trait PixelFormat: 'static {
     fn rgb888(red: u8, green: u8, blue: u8) -> Self::Word;
 
     /// The word of a texel, an RGB565 number, in light. Each channel of light is a whole number of 0 … 255, and 255 leaves the texel
-    /// as it is. This one's is an RGB565 number again, each channel rounded down; a format of your own with more bits than that may be finer.
+    /// as it is. This one's is an RGB565 number again, each channel the nearest; a format of your own with more bits than that may be finer.
     #[inline]
     #[must_use]
     fn lit(texel: u16, light: [u32; 3]) -> Self::Word {
-        // 0 … 256, so that full light leaves a texel as it is.
-        let [red, green, blue] = light.map(|light| light + (light >> 7));
-        let texel = u32::from(texel);
-        let red = ((texel >> 11) * red) >> 8;
-        let green = ((texel >> 5 & 63) * green) >> 8;
-        let blue = ((texel & 31) * blue) >> 8;
-        Self::rgb565((red << 11 | green << 5 | blue) as u16)
+        Self::rgb565(in_light(texel, light))
+    }
+
+    /// How many bits a word holds of red, green and blue, if [`PixelFormat::cut`] leaves the others out; 8 if it leaves out none.
+    #[doc(hidden)]
+    const BITS: [u32; 3] = [8; 3];
+
+    /// The word of three 8-bit channels that are scaled for it (`scaled` in shade's channels): bits are cut off.
+    #[doc(hidden)]
+    #[inline]
+    #[must_use]
+    fn cut([red, green, blue]: [u32; 3]) -> Self::Word {
+        Self::rgb888(red as u8, green as u8, blue as u8)
     }
 
     /// The least change of a channel that the format shows, in whole levels of 1/255, 1 … 8: that of its finest channel. Colours of small
@@ -145,7 +152,15 @@ impl PixelFormat for Rgb565 {
 
     #[inline]
     fn rgb888(red: u8, green: u8, blue: u8) -> u16 {
-        (u16::from(red) & 0xf8) << 8 | (u16::from(green) & 0xfc) << 3 | u16::from(blue) >> 3
+        let [red, green, blue] = [red, green, blue].map(u32::from);
+        (nearest::<255, 31>(red) << 11 | nearest::<255, 63>(green) << 5 | nearest::<255, 31>(blue)) as u16
+    }
+
+    const BITS: [u32; 3] = [5, 6, 5];
+
+    #[inline]
+    fn cut([red, green, blue]: [u32; 3]) -> u16 {
+        ((red & 0xf8) << 8 | (green & 0xfc) << 3 | blue >> 3) as u16
     }
 
     /// Of green.
@@ -175,18 +190,41 @@ impl PixelFormat for Rgb565 {
 
     #[inline]
     fn gray(level: u8) -> u16 {
-        GRAYS[usize::from(level >> 2)]
+        GRAYS[usize::from(level)]
     }
 }
 
-/// The words of greys, by the 6 bits of green: 4 cycles less than to put one together, on a Cortex-M0+ as on an M4.
-static GRAYS: [u16; 64] = {
-    let mut grays = [0; 64];
-    let mut green = 0;
-    while green < 64 {
-        let red = green as u16 >> 1;
-        grays[green] = red << 11 | (green as u16) << 5 | red;
-        green += 1;
+/// A texel in light, 0 … 255 in each channel, to the nearest: the two ways give the same.
+#[inline]
+fn in_light(texel: u16, light: [u32; 3]) -> u16 {
+    if IS_ARMV6M {
+        // No constant of more than 8 bits, each of which would be a register less. x / 255 = x / 256 · (1 + 1/256 + …): exact
+        // to the nearest for these x.
+        let texel = split(texel);
+        let [red, green, blue] = core::array::from_fn(|i| {
+            let x = texel[i] * light[i];
+            (x + (x >> 8) + 128) >> 8
+        });
+        return (red << 11 | green << 5 | blue) as u16;
+    }
+    const HALF: u32 = 0x8000;
+    // 257/65536 is 1/255 but for 2⁻¹⁶ of it, and no product divided by 255 is so close to a half that this matters. Channels stay in
+    // their places: to move them there and back would take 7 cycles more on a Cortex-M4.
+    let (texel, [red, green, blue]) = (u32::from(texel), light.map(|light| light << 8 | light));
+    let red = (texel & 0xf800) * red + (HALF << 11) & 0xf800 << 16;
+    let green = (texel & 0x07e0) * green + (HALF << 5) & 0x07e0 << 16;
+    let blue = (texel & 0x001f) * blue + HALF;
+    ((red | green | blue) >> 16) as u16
+}
+
+/// The words of greys: several cycles less than to put one together, on a Cortex-M0+ as on an M4.
+static GRAYS: [u16; 256] = {
+    let mut grays = [0; 256];
+    let mut level = 0;
+    while level < 256 {
+        let [red, green] = [nearest::<255, 31>(level as u32), nearest::<255, 63>(level as u32)];
+        grays[level] = (red << 11 | green << 5 | red) as u16;
+        level += 1;
     }
     grays
 };
@@ -222,6 +260,13 @@ impl<F: PixelFormat<Word = u16>> PixelFormat for BigEndian<F> {
     #[inline]
     fn lit(texel: u16, light: [u32; 3]) -> u16 {
         F::lit(texel, light).to_be()
+    }
+
+    const BITS: [u32; 3] = F::BITS;
+
+    #[inline]
+    fn cut(rgb: [u32; 3]) -> u16 {
+        F::cut(rgb).to_be()
     }
 
     const COLOR_STEP: u8 = F::COLOR_STEP;

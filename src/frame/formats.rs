@@ -39,6 +39,13 @@ macro_rules! rgb_formats {
                 $pack([nearest::<255, $most>(red), nearest::<255, $green>(green), nearest::<255, $most>(blue)])
             }
 
+            const BITS: [u32; 3] = [bits($most), bits($green), bits($most)];
+
+            #[inline]
+            fn cut(rgb: [u32; 3]) -> $word {
+                $pack(core::array::from_fn(|i| rgb[i] >> (8 - Self::BITS[i])))
+            }
+
             #[inline]
             fn lit(texel: u16, light: [u32; 3]) -> $word {
                 const RED: u32 = 31 * 255;
@@ -50,6 +57,11 @@ macro_rules! rgb_formats {
             $($more)*
         }
     )*};
+}
+
+/// The bits of a channel of 0 … `most`.
+const fn bits(most: u32) -> u32 {
+    (most + 1).trailing_zeros()
 }
 
 rgb_formats! {

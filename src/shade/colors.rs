@@ -50,7 +50,10 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M,
     #[inline(never)]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
         let lines = some_of::<M, _>(&line.lines, 0);
-        let (mut at, step) = (lines.map(|line| line.at as i32), lines.map(|line| line.slope));
+        let (mut at, step) = (
+            C::scaled::<F>(lines.map(|line| line.at as i32)),
+            C::scaled_step::<F>(lines.map(|line| line.slope)),
+        );
         let packed_step = C::step(step);
         if C::DROPPED == 0 {
             return Self::run(pixels, C::place(at), packed_step);
@@ -80,6 +83,7 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F,
 
     #[inline]
     fn row(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M]) {
+        let (at, step) = (C::scaled::<F>(at), C::scaled_step::<F>(step));
         draw_row(pixels, C::place(at), C::step(step), |at| at.word::<F>());
     }
 }
