@@ -10,7 +10,6 @@
 use super::gradients::Gradients;
 use super::packing::Packing;
 use super::scaling::Scaling;
-use super::spans::SmallEdges;
 use super::straight::Straight;
 use super::triangle::TriangleSetup;
 use crate::geometry::{Inputs, Oriented, ScreenVertex};
@@ -19,8 +18,8 @@ use core::fmt;
 /// The functions that set up what a shader reads.
 pub(crate) struct InputCode {
     pub(crate) inputs: Inputs,
-    /// All planes of a small triangle, of which twice the area is given. False, and they are of no use, if the general way has to.
-    pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &SmallEdges, u32, &Needs) -> bool,
+    /// All planes of a small triangle whose corners are set, and twice its area given. False, and they are of no use, if the general way has to.
+    pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs) -> bool,
     /// All planes of any triangle, the nearest vertex of which is first.
     pub(super) any: fn(&mut TriangleSetup, &Oriented<'_>, &Needs),
     pub(super) uv: Option<UvCode>,
