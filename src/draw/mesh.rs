@@ -34,7 +34,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     let light_face = surface.coloring.light_face(sight.lights);
     let assembler = Assembler { mesh, placing: &placing, coloring: &colors, cull, light_face };
     let mut raster = Raster::new(
-        (&surface.look, sight.fog.as_ref()),
+        (&surface.look, sight.fog),
         [projection.orthographic, colors.are_gray(mesh.bounds().is_gray)],
         window,
         band,

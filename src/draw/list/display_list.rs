@@ -289,7 +289,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayL
             }
             let draw = Draw {
                 look: surface.look,
-                fog,
+                fog: fog.copied(),
                 vertices: mesh.vertices(),
                 viewport: camera.projection().viewport,
                 end: self.triangles.len() as u16,
