@@ -120,7 +120,7 @@ where
         let mut runs = Runs::new(polygon, &window);
         let mut result = Ok(());
         while result.is_ok()
-            && let Some((run, corners)) = runs.next()
+            && let Some((run, corners)) = runs.next(polygon, &window)
         {
             self.window = run;
             result = self.draw(corners, cull, is_orthographic, shader);

@@ -7,7 +7,7 @@
 use super::sight::Sight;
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry::{Assembler, Count, Placing, VertexCache};
+use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
@@ -41,13 +41,19 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     );
     let mut cache = VertexCache::new(mesh);
     cache.forget();
+    let mut runs = None;
     loop {
         while let Some(triangle) = assembler.next(&mut cache, stats) {
-            raster.draw_oriented(&triangle, stats);
+            let is_drawn = raster.draw_oriented(&triangle);
+            if runs.is_none() {
+                stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
+            }
         }
-        let Some(polygon) = cache.take_folded() else {
-            return;
-        };
-        raster.draw_folded(polygon, cull, stats);
+        match cache.clipped {
+            Clipped::None => return,
+            Clipped::Uncut => assembler.cut(&mut cache, stats),
+            Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, &projection.viewport, stats),
+        }
     }
 }
