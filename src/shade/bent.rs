@@ -19,12 +19,9 @@ use crate::raster::{Attribute, Place};
 const MOST_GENERAL: u32 = 63;
 
 impl Perspective<'_> {
-    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on.
+    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
     #[inline(never)]
     pub(super) fn bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        if self.setup.sliver {
-            return self.bent_in_sliver(x, y, steps);
-        }
         let near = self.near(x, y, steps);
         self.bent_from(&near, steps)
     }
@@ -43,8 +40,8 @@ impl Perspective<'_> {
             self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(near), attribute.at(&far)]);
         } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
             let all = setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
-            for (i, (attribute, line)) in all.take(self.units.count) {
-                let (above, up) = (attribute.at(near), self.units.up(i, attribute));
+            for (i, (attribute, line)) in all.take(self.units.count()) {
+                let (above, up) = (attribute.at(near), self.units.up(i));
                 let (from_horizon, log2) = from_horizon(attribute, above);
                 let u = attribute.least.wrapping_add(above);
                 let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
@@ -62,7 +59,7 @@ impl Perspective<'_> {
     /// A sliver has no planes: its values at both ends come from weights.
     #[cold]
     #[inline(never)]
-    fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
+    pub(super) fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
         if let Some(resolve) = self.units.in_sliver {
             if steps > 0 {
@@ -110,7 +107,7 @@ impl Perspective<'_> {
         }
         let w_step = if down >= 0 { size >> down.min(31) } else { size << -down };
         self.curve.set_w(rises, w_step, steps);
-        (self.curve.n, self.curve.n_step) = if rises { (steps, u32::MAX) } else { (0, 1) };
+        (self.curve.n, self.curve.n_step) = if rises { (steps as u8, -1) } else { (0, 1) };
         match way_of(self.units.form, w_step, steps) {
             Way::None => None,
             way => Some((way, (size, down))),
@@ -129,7 +126,7 @@ impl Perspective<'_> {
     #[inline(never)]
     fn set_pixel(&mut self, at: &dyn Fn(&Attribute) -> i32) {
         for (attribute, line) in
-            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count)
+            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count())
         {
             let u = attribute.least.wrapping_add(at(attribute));
             *line = Linear { at: (u << attribute.scale_log2) as u32, slope: 0 };
@@ -139,7 +136,7 @@ impl Perspective<'_> {
     /// The forms that take the change over a pixel: all but the table's.
     #[inline]
     fn set_by_slope(&mut self, near: &Place, rises: bool, steps: u32, (size, down): (u32, i32), way: &Way) {
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
+        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count()) {
             let above = attribute.at(near);
             let u = attribute.least.wrapping_add(above);
             // Over a pixel, away from the near end, times 2^−`log2`.
@@ -149,7 +146,7 @@ impl Perspective<'_> {
             match way {
                 Way::Straight => self.set_straight(i, attribute, above, rises, scaled(slope, log2), steps),
                 Way::Chords => {
-                    let up = self.units.up(i, attribute);
+                    let up = self.units.up(i);
                     let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
                     self.set_line(i, Linear { at: (u << up) as u32, slope });
                 }
@@ -221,7 +218,7 @@ impl Perspective<'_> {
         };
         let t = Reciprocal::coarse(t);
         let mantissa = t.mantissa_below();
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
+        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count()) {
             let [above, above_far] = ends(attribute);
             let (u, rise) = (attribute.least.wrapping_add(above), above_far - above);
             // rise/t is the product times 2^(zeros − 62). Its upper half, cut towards zero.
@@ -240,7 +237,7 @@ impl Perspective<'_> {
                     );
                 }
                 _ => {
-                    let up = self.units.up(i, attribute);
+                    let up = self.units.up(i);
                     let slope = scaled_wide(product, t.zeros as i32 - 62 + up as i32);
                     let one = if matches!(way, Way::Table) { slope << ONE_LOG2 } else { 0 };
                     self.set_line(i, Linear { at: (u << up).wrapping_sub(one) as u32, slope });
