@@ -107,7 +107,7 @@ impl Perspective<'_> {
         }
         let w_step = if down >= 0 { size >> down.min(31) } else { size << -down };
         self.curve.set_w(rises, w_step, steps);
-        (self.curve.n, self.curve.n_step) = if rises { (steps as u8, -1) } else { (0, 1) };
+        (self.curve.n, self.curve.n_step) = if rises { (steps, u32::MAX) } else { (0, 1) };
         match way_of(self.units.form, w_step, steps) {
             Way::None => None,
             way => Some((way, (size, down))),

@@ -25,9 +25,9 @@ pub struct Curve {
     /// w at the left pixel, 32 fraction bits (1 is `u32::MAX`), and its step to the right, which wraps.
     pub(crate) w: u32,
     pub(crate) w_step: u32,
-    /// How far the left pixel is from the near end, and by how much the next is farther: 1 or −1. (Not where w alone counts.)
-    pub(crate) n: u8,
-    pub(crate) n_step: i8,
+    /// How far the left pixel is from the near end, and by how much the next is farther: 1 or −1.
+    pub(crate) n: u32,
+    pub(crate) n_step: u32,
 }
 
 /// An attribute along a part of a row: linear in t. `at` is its value at t = 0, and `slope` its change over a unit of
@@ -55,19 +55,6 @@ impl Linear {
 }
 
 impl Curve {
-    /// How far the left pixel is from the near end, and by how much the next is farther, which wraps.
-    #[inline(always)]
-    pub(crate) fn distances(&self) -> (u32, u32) {
-        (self.n.into(), i32::from(self.n_step) as u32)
-    }
-
-    /// How far a pixel is from the near end, from the distance to the left one.
-    #[inline(always)]
-    pub(crate) fn distance_of(&self, pixel: u32) -> u32 {
-        let (n, n_step) = self.distances();
-        n.wrapping_add(pixel.wrapping_mul(n_step))
-    }
-
     /// Makes w 1 at the near end, which is the right one if q rises.
     #[inline(always)]
     pub(super) fn set_w(&mut self, rises: bool, w_step: u32, steps: u32) {
@@ -113,8 +100,7 @@ pub(crate) struct Ts<const CHORDS: bool> {
 impl<const CHORDS: bool> Ts<CHORDS> {
     #[inline(always)]
     pub(crate) fn new(curve: &Curve) -> Self {
-        let Curve { w, w_step, .. } = *curve;
-        let (n, n_step) = curve.distances();
+        let Curve { w, w_step, n, n_step, .. } = *curve;
         Self { w, w_step, n, n_step }
     }
 
@@ -138,8 +124,7 @@ pub(crate) struct Chords {
 impl Chords {
     #[inline(always)]
     pub(crate) fn new(curve: &Curve) -> Self {
-        let Curve { w, w_step, .. } = *curve;
-        let (n, n_step) = curve.distances();
+        let Curve { w, w_step, n, n_step, .. } = *curve;
         Self { w, w_step, n, n_step, t: distance(Form::Modular, w, n) }
     }
 

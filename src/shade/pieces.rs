@@ -49,7 +49,7 @@ impl Way {
         match self {
             Self::Straight => n,
             Self::Table => inverse(w),
-            Self::Chords => distance(Form::Modular, w, curve.distance_of(n)),
+            Self::Chords => distance(Form::Modular, w, curve.n.wrapping_add(n.wrapping_mul(curve.n_step))),
         }
     }
 }
@@ -153,7 +153,7 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
                 self.straight_piece(piece, &mut part);
             } else {
                 part.w = curve.w.wrapping_add(first.wrapping_mul(curve.w_step));
-                part.n = curve.distance_of(first) as u8;
+                part.n = curve.n.wrapping_add(first.wrapping_mul(curve.n_step));
                 self.curved_piece(piece, &part, way);
             }
             if next == end {
