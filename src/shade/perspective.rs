@@ -57,6 +57,8 @@ pub(super) enum Way {
     Chords,
     /// Not at one go: it is too long.
     None,
+    /// As [`Perspective::bent`] says.
+    Bent,
 }
 
 /// The rows of a triangle, for a fill. The fields are in the order in which Armv6-M reaches them with the fewest registers.
@@ -156,23 +158,36 @@ impl<'a> Perspective<'a> {
         if way == Way::Chords {
             return fill.chords(pixels, &self.curve);
         }
-        self.draw_parts(x, y, pixels, fill);
+        self.draw_parts(x, y, pixels, fill, way == Way::Bent);
     }
 
-    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
+    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on. Not too many, but bent, they may be
+    /// at first: asked from here, `bent` is not on the stack together with what asks for it.
     #[cold]
     #[inline(never)]
-    fn draw_parts<W>(&mut self, mut x: i32, y: i32, mut pixels: &mut [W], fill: &dyn Fill<W>) {
-        let mut count = pixels.len().div_ceil(2);
+    fn draw_parts<W>(
+        &mut self,
+        mut x: i32,
+        y: i32,
+        mut pixels: &mut [W],
+        fill: &dyn Fill<W>,
+        are_bent: bool,
+    ) {
+        let mut count = if are_bent { pixels.len() } else { pixels.len().div_ceil(2) };
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
             let near_is_right = !self.setup.is_small && !self.setup.straight && self.setup.q_rises;
             let way = loop {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
-                match (self.way)(self, x + skipped as i32, y, count as u32 - 1) {
-                    Way::None => count = count.div_ceil(2),
-                    way => break way,
+                let (x, steps) = (x + skipped as i32, count as u32 - 1);
+                let way = match (self.way)(self, x, y, steps) {
+                    Way::Bent => self.bent(x, y, steps),
+                    way => way,
+                };
+                if way != Way::None {
+                    break way;
                 }
+                count = count.div_ceil(2);
             };
             let at = if near_is_right { all.len() - count } else { count };
             let Some((run, rest)) = all.split_at_mut_checked(at) else {
@@ -201,7 +216,7 @@ impl<'a> Perspective<'a> {
             // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
             let fall = steps * q_step.unsigned_abs();
             if steps * fall > m >> zeros >> 3 {
-                return self.bent(x, y, steps);
+                return Way::Bent;
             }
             // Taken as constant, q moves a row by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
             bends = fall > 1 << 12;
