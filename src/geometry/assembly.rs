@@ -247,11 +247,14 @@ impl Assembler<'_> {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
         cache.clipped = Clipped::None;
+        for (index, to) in self.last(cache).into_iter().zip(&mut cache.vertices) {
+            self.complete(index, to);
+        }
         let corners = self.corners(cache);
         let Some((to_clip, clip)) = self.placing.clipping() else {
             return;
         };
-        let (count, is_folded) = clip.cut(to_clip, self.coloring, corners, &mut cache.vertices);
+        let (count, is_folded) = clip.cut(to_clip, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }

@@ -397,7 +397,7 @@ mod tests {
                     n += 8;
                 }
             }
-            Way::None => {}
+            Way::None | Way::Bent => {}
         }
         worst
     }
@@ -417,7 +417,7 @@ mod tests {
                         Way::Straight => 0,
                         Way::Table => 1,
                         Way::Chords => 2,
-                        Way::None => continue,
+                        Way::None | Way::Bent => continue,
                     };
                     worst[index] = worst[index].max(displacement(form, &way, w_step, steps));
                 }
