@@ -38,7 +38,7 @@ pub(super) struct UvCode {
     /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.
     pub(super) complete: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &Scaling, Option<i32>),
     /// Where their scale is applied.
-    pub(super) scaling: fn(&Needs, &[&ScreenVertex; 3]) -> Scaling,
+    pub(super) scale: fn(&Needs, &[&ScreenVertex; 3], &mut Scaling),
 }
 
 impl PartialEq for InputCode {
@@ -142,14 +142,14 @@ impl Needs {
     /// As much before planes are made as there is room for: their rounding is multiplied by the rest.
     #[cold]
     #[inline(never)]
-    pub(super) fn scaled_for(&self, vertices: &[&ScreenVertex; 3]) -> Scaling {
+    pub(super) fn scale_for(&self, vertices: &[&ScreenVertex; 3], scaling: &mut Scaling) {
         let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        self.scaled([0, 1].map(|i| {
+        *scaling = self.scaled([0, 1].map(|i| {
             let size =
                 (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
             // Differences stay below 2²⁹.
             size.leading_zeros().saturating_sub(3).min(self.scale) as u8
-        }))
+        }));
     }
 
     #[inline(never)]

@@ -49,7 +49,8 @@ impl Prepared {
     #[cold]
     #[inline(never)]
     fn set_any(&mut self, triangle: &Oriented<'_>, window: &Window, needs: &Needs, is_large: bool) -> bool {
-        if is_large && !self.rows.start_long(&triangle.vertices.map(position), window) {
+        self.setup.corners = triangle.vertices.map(position);
+        if is_large && !self.rows.start_long(&self.setup.corners, window) {
             return false;
         }
         (needs.code.any)(&mut self.setup, &triangle.nearest_first(), needs);
