@@ -23,7 +23,7 @@ impl TriangleSetup {
         let is_level = needs.is_exactly_straight(least, most);
         if let Straight::Below(limit) = needs.straight
             && !is_level
-            && !Bend::new(&gradients.edges, q).is_some_and(|bend| bend.is_straight(limit))
+            && !Bend::new(&gradients.edges, q).is_some_and(|bend| bend.is_straight(limit.get()))
         {
             return false;
         }

@@ -77,7 +77,7 @@ pub(crate) struct Needs {
     /// Whether perspective is exact at every pixel.
     pub(crate) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
-    pub(crate) scale: u32,
+    pub(crate) scale: u8,
     /// How u and v are packed, before they are scaled.
     pub(crate) unscaled_packing: Packing,
     /// How they are packed with all of the scale, as small triangles have it.
@@ -85,12 +85,14 @@ pub(crate) struct Needs {
     /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
     pub(crate) margins: [u8; 2],
     /// How much a colour may be off by, in levels of 1/255: a step of the format's finest channel.
-    pub(crate) color_step: u32,
+    pub(crate) color_step: u8,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
     pub(crate) gray: bool,
 }
+
+const _: () = assert!(size_of::<Needs>() <= 24 + size_of::<usize>());
 
 impl Needs {
     /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
@@ -136,7 +138,7 @@ impl Needs {
     /// All of it before planes are made.
     #[inline]
     pub(super) fn scaled_at_once(&self) -> Scaling {
-        self.scaled([self.scale as u8; 2])
+        self.scaled([self.scale; 2])
     }
 
     /// As much before planes are made as there is room for: their rounding is multiplied by the rest.
@@ -148,13 +150,13 @@ impl Needs {
             let size =
                 (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
             // Differences stay below 2²⁹.
-            size.leading_zeros().saturating_sub(3).min(self.scale) as u8
+            size.leading_zeros().saturating_sub(3).min(self.scale.into()) as u8
         }));
     }
 
     #[inline(never)]
     fn scaled(&self, finer: [u8; 2]) -> Scaling {
-        let rest = finer.map(|finer| self.scale as u8 - finer);
+        let rest = finer.map(|finer| self.scale - finer);
         Scaling::new(finer, rest, &self.unscaled_packing)
     }
 

@@ -103,7 +103,7 @@ impl TriangleSetup {
         }
         let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Below(limit) if !is_exact => self.is_straight(&q, limit),
+            Straight::Below(limit) if !is_exact => self.is_straight(&q, limit.get()),
             _ => true,
         };
         let reciprocal = if self.straight {

@@ -98,8 +98,8 @@ impl TriangleSetup {
         {
             let least = q.min(q_b).min(q_c);
             // As `Bend::is_needless`, with the largest difference for all edges: 26 bits, and 12 times 15 and a bit.
-            if (2 * largest) * ((fall >> 12) + 1) > ((least >> 16) * limit) >> 8 {
-                bend = ColorBend::new(fall, least, needs.color_step);
+            if (2 * largest) * ((fall >> 12) + 1) > ((least >> 16) * limit.get()) >> 8 {
+                bend = ColorBend::new(fall, least, needs.color_step.into());
             }
         } else if needs.code.uv.is_some() {
             return self.set_held(small);
@@ -110,8 +110,8 @@ impl TriangleSetup {
             }
             if bend.is_needed()
                 && let Straight::Below(limit) = needs.straight
-                && !Bend::is_needless(&small.gradients.edges, small.q, limit)
-                && !(uv.bend)(self, small, limit)
+                && !Bend::is_needless(&small.gradients.edges, small.q, limit.get())
+                && !(uv.bend)(self, small, limit.get())
             {
                 return false;
             }
