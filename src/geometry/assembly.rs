@@ -131,14 +131,15 @@ pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache<'_>, usize);
 
 /// The stages before set-up, for one mesh. Its functions are not inlined, so that their stack frames are gone while pixels are
 /// drawn.
+#[repr(C)]
 pub(crate) struct Assembler<'a> {
+    pub(crate) placing: Placing,
     pub(crate) mesh: &'a Mesh<'a>,
-    pub(crate) placing: &'a Placing,
-    pub(crate) coloring: &'a VertexColors<'a>,
-    pub(crate) cull: Cull,
     /// [`light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
     /// programs without lights.
     pub(crate) light_face: Option<LightFace>,
+    pub(crate) cull: Cull,
+    pub(crate) coloring: VertexColors<'a>,
 }
 
 impl Assembler<'_> {
@@ -227,7 +228,7 @@ impl Assembler<'_> {
     /// Gives a vertex its attributes.
     #[inline(never)]
     fn complete(&self, index: u16, to: &mut ScreenVertex) {
-        to.set_attributes(self.mesh.vertex(index), self.coloring);
+        to.set_attributes(self.mesh.vertex(index), &self.coloring);
     }
 
     /// The indices of the triangle last looked at.
@@ -302,7 +303,7 @@ pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache<'_>,
     // The cache may hold a vertex twice: both are lit.
     for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
         if polygon_corners == 0 && indices.contains(owner) {
-            vertex.set_attributes(assembler.mesh.vertex(*owner), assembler.coloring);
+            vertex.set_attributes(assembler.mesh.vertex(*owner), &assembler.coloring);
             dim(&mut vertex.color, light);
         } else if i < polygon_corners {
             dim(&mut vertex.color, light);
