@@ -120,7 +120,7 @@ where
         let mut runs = Runs::new(polygon, &window);
         let mut result = Ok(());
         while result.is_ok()
-            && let Some((run, corners)) = runs.next()
+            && let Some((run, corners)) = runs.next(polygon, &window)
         {
             self.window = run;
             result = self.draw(corners, cull, is_orthographic, shader);
@@ -382,9 +382,9 @@ impl Posed {
     #[inline(never)]
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
-        let colors = VertexColors::default();
+        VertexColors::default().of_corners(triangle.each_ref(), to);
         self.placing
             .clipping()
-            .map_or((0, false), |(to_clip, clip)| clip.cut(to_clip, &colors, triangle.each_ref(), to))
+            .map_or((0, false), |(to_clip, clip)| clip.cut(to_clip, triangle.each_ref(), to))
     }
 }

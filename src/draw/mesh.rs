@@ -7,7 +7,7 @@
 use super::sight::Sight;
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry::{Assembler, Count, Placing, VertexCache};
+use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache, VertexColors};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
@@ -25,29 +25,40 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
     let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let window = band.window().within(&projection.viewport);
-    let mut placing = Placing::new(projection, camera, pose);
-    if window.is_empty() || !placing.sees(projection, mesh.bounds()) {
+    let mut assembler = Assembler {
+        mesh,
+        placing: Placing::ZERO,
+        coloring: VertexColors::default(),
+        cull,
+        light_face: surface.coloring.light_face(sight.lights),
+    };
+    assembler.placing.set(projection, camera, pose);
+    if window.is_empty() || !assembler.placing.sees(projection, mesh.bounds()) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let colors = surface.coloring.colors(sight.lights, pose);
-    let light_face = surface.coloring.light_face(sight.lights);
-    let assembler = Assembler { mesh, placing: &placing, coloring: &colors, cull, light_face };
+    surface.coloring.set_colors(sight.lights, pose, &mut assembler.coloring);
     let mut raster = Raster::new(
-        (&surface.look, sight.fog.as_ref()),
-        [projection.orthographic, colors.are_gray(mesh.bounds().is_gray)],
+        (&surface.look, sight.fog),
+        [projection.orthographic, assembler.coloring.are_gray(mesh.bounds().is_gray)],
         window,
         band,
     );
     let mut cache = VertexCache::new(mesh);
     cache.forget();
+    let mut runs = None;
     loop {
         while let Some(triangle) = assembler.next(&mut cache, stats) {
-            raster.draw_oriented(&triangle, stats);
+            let is_drawn = raster.draw_oriented(&triangle);
+            if runs.is_none() {
+                stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
+            }
         }
-        let Some(polygon) = cache.take_folded() else {
-            return;
-        };
-        raster.draw_folded(polygon, cull, stats);
+        match cache.clipped {
+            Clipped::None => return,
+            Clipped::Uncut => assembler.cut(&mut cache, stats),
+            Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, &projection.viewport, stats),
+        }
     }
 }

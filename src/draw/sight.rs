@@ -14,5 +14,5 @@ use crate::shade::InFog;
 pub struct Sight<'v, 'a, F: PixelFormat, D: DepthFormat> {
     pub(super) camera: &'v Camera,
     pub(super) lights: Option<&'v Lights<'v>>,
-    pub(super) fog: Option<InFog<'a, F, D>>,
+    pub(super) fog: Option<&'v InFog<'a, F, D>>,
 }

@@ -5,8 +5,11 @@
 //! - Assumes: the vertices lie in the guard band.
 
 use crate::frame::{Band, DepthFormat, PixelFormat, Window};
-use crate::geometry::{Count, Cull, Oriented, RangeError, ScreenVertex, area, position};
+use crate::geometry::{
+    Clipped, Count, Cull, Oriented, RangeError, ScreenVertex, VertexCache, area, position,
+};
 use crate::raster::{Needs, Prepared, Runs};
+use crate::scene::Viewport;
 use crate::shade::{Cover, InFog, Look, Surface};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
@@ -46,11 +49,7 @@ pub fn draw_triangle<'a, F: PixelFormat, D: DepthFormat>(
         return Err(RangeError);
     }
     let window = band.window();
-    Raster::new((&surface.into().look, None), [false; 2], window, band).draw(
-        vertices.each_ref(),
-        cull,
-        &mut (),
-    );
+    Raster::new((&surface.into().look, None), [false; 2], window, band).draw(vertices.each_ref(), cull);
     Ok(())
 }
 
@@ -91,10 +90,9 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     }
 
     #[inline]
-    pub(crate) fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull, stats: &mut impl Count) {
-        match Oriented::new(vertices, cull) {
-            Some(triangle) => self.draw_oriented(&triangle, stats),
-            None => stats.count(|stats| &mut stats.culled),
+    pub(crate) fn draw(&mut self, vertices: [&ScreenVertex; 3], cull: Cull) {
+        if let Some(triangle) = Oriented::new(vertices, cull) {
+            self.draw_oriented(&triangle);
         }
     }
 
@@ -102,32 +100,61 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     #[inline]
     pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3]) {
         let area = area(vertices.map(position)) as u32;
-        self.draw_oriented(&Oriented { vertices, area }, &mut ());
+        self.draw_oriented(&Oriented { vertices, area });
     }
 
-    /// A triangle that is not culled.
+    /// A triangle that is not culled. False if it has no pixels in the window.
     #[inline]
-    pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>, stats: &mut impl Count) {
-        if !self.prepared.set(triangle, &self.window, &self.needs) {
-            return stats.count(|stats| &mut stats.out_of_sight);
+    pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
+        let is_seen = self.prepared.set(triangle, &self.window, &self.needs);
+        if is_seen {
+            self.paint();
         }
-        stats.count(|stats| &mut stats.drawn);
-        self.paint();
+        is_seen
     }
 
     /// A polygon that is folded.
     #[cold]
     #[inline(never)]
-    pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull, stats: &mut impl Count) {
+    pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull) {
         let window = self.window.clone();
         let mut runs = Runs::new(polygon, &window);
-        let mut is_drawn = false;
-        while let Some((run, corners)) = runs.next() {
-            (self.window, is_drawn) = (run, true);
-            self.draw(corners, cull, &mut ());
+        while let Some((run, corners)) = runs.next(polygon, &window) {
+            self.window = run;
+            self.draw(corners, cull);
         }
         self.window = window;
-        stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
+    }
+
+    /// Goes on to the next run of the folded polygon in a mesh's cache, and to a window that is just that. Where there is none, the
+    /// polygon is done. It counts as drawn if it has any.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn find_run(
+        &mut self,
+        cache: &mut VertexCache<'_>,
+        cull: Cull,
+        runs: &mut Option<Runs>,
+        viewport: &Viewport,
+        stats: &mut impl Count,
+    ) {
+        let all = self.band.window().within(viewport);
+        let polygon = cache.polygon();
+        let mut is_first = runs.is_none();
+        let found = runs.get_or_insert_with(|| Runs::new(polygon, &all));
+        while let Some((run, corners)) = found.next(polygon, &all) {
+            if core::mem::take(&mut is_first) {
+                stats.count(|stats| &mut stats.drawn);
+            }
+            if !cull.leaves_out(area(corners.map(position))) {
+                self.window = run;
+                return cache.set_piece(found.number());
+            }
+        }
+        if is_first {
+            stats.count(|stats| &mut stats.out_of_sight);
+        }
+        (self.window, *runs, cache.clipped) = (all, None, Clipped::None);
     }
 
     /// The triangle that was set up.

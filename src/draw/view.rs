@@ -7,7 +7,7 @@
 use super::canvas::Canvas;
 use super::sight::Sight;
 use crate::frame::{BlendFormat, DepthFormat, PixelFormat};
-use crate::geometry::Stats;
+use crate::geometry::{Count, Stats};
 use crate::math::Pose;
 use crate::scene::{Camera, Lights, Mesh};
 use crate::shade::{Fog, InFog, Surface};
@@ -40,31 +40,19 @@ pub struct Clear;
 /// without fog do not link it.
 pub trait Air<'a, F: PixelFormat>: Sealed {
     #[doc(hidden)]
-    fn sight<'v, D: DepthFormat>(
-        &self,
-        camera: &'v Camera,
-        lights: Option<&'v Lights<'v>>,
-    ) -> Sight<'v, 'a, F, D>;
+    fn fog<D: DepthFormat>(&self, camera: &Camera) -> Option<InFog<'a, F, D>>;
 }
 
 impl<'a, F: PixelFormat> Air<'a, F> for Clear {
     #[inline]
-    fn sight<'v, D: DepthFormat>(
-        &self,
-        camera: &'v Camera,
-        lights: Option<&'v Lights<'v>>,
-    ) -> Sight<'v, 'a, F, D> {
-        Sight { camera, lights, fog: None }
+    fn fog<D: DepthFormat>(&self, _: &Camera) -> Option<InFog<'a, F, D>> {
+        None
     }
 }
 
 impl<'a, F: BlendFormat> Air<'a, F> for Fog<'a> {
-    fn sight<'v, D: DepthFormat>(
-        &self,
-        camera: &'v Camera,
-        lights: Option<&'v Lights<'v>>,
-    ) -> Sight<'v, 'a, F, D> {
-        Sight { camera, lights, fog: Some(InFog::new(self, camera)) }
+    fn fog<D: DepthFormat>(&self, camera: &Camera) -> Option<InFog<'a, F, D>> {
+        Some(InFog::new(self, camera))
     }
 }
 
@@ -125,7 +113,7 @@ impl<'v, A: Copy> View<'v, A> {
     where
         A: Air<'a, C::Format>,
     {
-        canvas.draw_mesh(&self.air.sight(self.camera, self.lights), mesh, pose, &surface.into(), &mut ())
+        self.draw_counted_by(mesh, pose, &surface.into(), canvas, &mut ())
     }
 
     /// As [`View::draw`], and counts what became of the mesh.
@@ -140,6 +128,24 @@ impl<'v, A: Copy> View<'v, A> {
     where
         A: Air<'a, C::Format>,
     {
-        canvas.draw_mesh(&self.air.sight(self.camera, self.lights), mesh, pose, &surface.into(), stats)
+        self.draw_counted_by(mesh, pose, &surface.into(), canvas, stats)
+    }
+
+    #[inline]
+    fn draw_counted_by<'a, C: Canvas<'a>>(
+        &self,
+        mesh: &Mesh<'a>,
+        pose: &Pose,
+        surface: &Surface<'a, C::Format, C::Depth>,
+        canvas: &mut C,
+        stats: &mut impl Count,
+    ) -> C::Output
+    where
+        A: Air<'a, C::Format>,
+    {
+        // By reference: clear air takes no stack.
+        let fog = self.air.fog(self.camera);
+        let sight = Sight { camera: self.camera, lights: self.lights, fog: fog.as_ref() };
+        canvas.draw_mesh(&sight, mesh, pose, surface, stats)
     }
 }

@@ -34,17 +34,30 @@ pub(crate) struct VertexCache<'m> {
     owners: [u16; CACHED],
     /// The slot that was filled last.
     newest: u8,
-    /// How many pieces of the last clipped triangle are still to come; they come from the last to the first, so it is the
-    /// number of the current one too.
-    pieces: u8,
-    /// How many corners the triangle that was cut last has, if it is folded and is to be drawn.
-    folded: u8,
+    pub(crate) clipped: Clipped,
+    /// The piece of a clipped triangle that comes next, or the last that came.
+    piece: u8,
+    /// Whether it is still to come.
+    has_piece: bool,
     /// The mesh's triangles that were not looked at yet.
     left: Triangles<'m>,
     /// For each index modulo [`HINTS`] the slot of the vertex that was placed last. A vertex whose hint another one took is not
     /// found: it is transformed again, and is then in the cache twice.
     hints: [u8; HINTS],
     vertices: [ScreenVertex; CACHED],
+}
+
+/// What is still to come of the triangle last looked at, if it has to be clipped.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Clipped {
+    /// It has not, or nothing is.
+    None,
+    /// All: it is still to be [cut](Assembler::cut).
+    Uncut,
+    /// A polygon of so many corners, in pieces.
+    Pieces(u8),
+    /// A polygon of so many corners, which is folded.
+    Folded(u8),
 }
 
 impl<'m> VertexCache<'m> {
@@ -54,8 +67,9 @@ impl<'m> VertexCache<'m> {
         Self {
             owners: [0; CACHED],
             newest: 0,
-            pieces: 0,
-            folded: 0,
+            clipped: Clipped::None,
+            piece: 0,
+            has_piece: false,
             left: mesh.indices(),
             hints: [0; HINTS],
             vertices: [ScreenVertex::ZERO; CACHED],
@@ -70,12 +84,18 @@ impl<'m> VertexCache<'m> {
         [self.hints[0], self.hints[1]] = [0, 1];
     }
 
-    /// The triangle that was cut last, if it is folded, once.
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn take_folded(&mut self) -> Option<&[ScreenVertex]> {
-        let count = core::mem::take(&mut self.folded);
-        self.vertices.get(..count.into()).filter(|polygon| !polygon.is_empty())
+    /// The polygon that is left of the triangle that was cut last.
+    pub(crate) fn polygon(&self) -> &[ScreenVertex] {
+        match self.clipped {
+            Clipped::Pieces(corners) | Clipped::Folded(corners) => self.vertices.get(..corners.into()),
+            _ => None,
+        }
+        .unwrap_or_default()
+    }
+
+    /// Lets a piece of it be the [next](Assembler::next) triangle.
+    pub(crate) fn set_piece(&mut self, number: usize) {
+        (self.piece, self.has_piece) = (number as u8, true);
     }
 
     /// The slot of a vertex, if it is found.
@@ -111,41 +131,38 @@ pub(crate) type LightFace = fn(&Assembler<'_>, &mut VertexCache<'_>, usize);
 
 /// The stages before set-up, for one mesh. Its functions are not inlined, so that their stack frames are gone while pixels are
 /// drawn.
+#[repr(C)]
 pub(crate) struct Assembler<'a> {
+    pub(crate) placing: Placing,
     pub(crate) mesh: &'a Mesh<'a>,
-    pub(crate) placing: &'a Placing,
-    pub(crate) coloring: &'a VertexColors<'a>,
-    pub(crate) cull: Cull,
     /// [`light_face`] with flat shading, else `None`. A function pointer, so that the linker drops it from
     /// programs without lights.
     pub(crate) light_face: Option<LightFace>,
+    pub(crate) cull: Cull,
+    pub(crate) coloring: VertexColors<'a>,
 }
 
 impl Assembler<'_> {
-    /// The next triangle, or piece of a clipped one, that is not culled. This loop is as far as culled triangles get, more
-    /// than half of those of a closed mesh. A vertex that only culled triangles have is transformed, but never gets
-    /// attributes.
+    /// The next triangle that is not culled; `None` at the end, or where [one is clipped](VertexCache::clipped). Of that, whoever asks
+    /// says piece by piece what is [next](VertexCache::set_piece).
+    ///
+    /// This loop is as far as culled triangles get, more than half of those of a closed mesh. A vertex that only culled triangles have is
+    /// transformed, but never gets attributes.
     #[inline(never)]
     pub(crate) fn next<'c>(
         &self,
         cache: &'c mut VertexCache<'_>,
         stats: &mut impl Count,
     ) -> Option<Oriented<'c>> {
-        if cache.pieces > 0 && self.find_piece(cache, stats) {
+        if cache.clipped != Clipped::None {
             return self.piece(cache);
         }
         loop {
             let indices = cache.left.next()?;
             stats.count(|stats| &mut stats.triangles);
             let Some(slots) = self.place(indices, cache, stats) else {
-                self.cut(cache, stats);
-                if cache.folded > 0 {
-                    return None;
-                }
-                if self.find_piece(cache, stats) {
-                    return self.piece(cache);
-                }
-                continue;
+                cache.clipped = Clipped::Uncut;
+                return None;
             };
             let area = area(slots.map(|slot| position(&cache.vertices[slot])));
             if self.cull.leaves_out(area) {
@@ -211,7 +228,7 @@ impl Assembler<'_> {
     /// Gives a vertex its attributes.
     #[inline(never)]
     fn complete(&self, index: u16, to: &mut ScreenVertex) {
-        to.set_attributes(self.mesh.vertex(index), self.coloring);
+        to.set_attributes(self.mesh.vertex(index), &self.coloring);
     }
 
     /// The indices of the triangle last looked at.
@@ -227,43 +244,51 @@ impl Assembler<'_> {
     /// Clips the triangle last looked at, to a polygon in the cache's memory.
     #[cold]
     #[inline(never)]
-    fn cut(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
+    pub(crate) fn cut(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
         cache.forget();
+        cache.clipped = Clipped::None;
+        for (index, to) in self.last(cache).into_iter().zip(&mut cache.vertices) {
+            self.complete(index, to);
+        }
         let corners = self.corners(cache);
         let Some((to_clip, clip)) = self.placing.clipping() else {
             return;
         };
-        let (count, is_folded) = clip.cut(to_clip, self.coloring, corners, &mut cache.vertices);
+        let (count, is_folded) = clip.cut(to_clip, corners, &mut cache.vertices);
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }
-        if is_folded {
-            cache.folded = count as u8;
-        } else {
-            cache.pieces = count.saturating_sub(2) as u8;
-        }
+        cache.piece = count.saturating_sub(2) as u8;
+        cache.clipped = if is_folded { Clipped::Folded(count as u8) } else { Clipped::Pieces(count as u8) };
     }
 
-    /// Goes on to the next piece of the clipped triangle that is not culled. False if there is none.
+    /// Goes on to the next piece of the clipped triangle that is not culled, from the last to the first: its polygon is a fan around the
+    /// first vertex. Where there is none, the triangle is done.
     #[cold]
     #[inline(never)]
-    fn find_piece(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) -> bool {
-        while cache.pieces > 0 {
-            cache.pieces -= 1;
-            if self.piece(cache).is_some() {
-                return true;
+    pub(crate) fn find_piece(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
+        while cache.piece > 0 {
+            let number = cache.piece - 1;
+            cache.set_piece(number.into());
+            if piece(cache.polygon(), number.into())
+                .is_some_and(|corners| Oriented::new(corners, self.cull).is_some())
+            {
+                return;
             }
             stats.count(|stats| &mut stats.culled);
         }
-        false
+        (cache.has_piece, cache.clipped) = (false, Clipped::None);
     }
 
-    /// The current piece of the clipped triangle: its polygon is a fan around the first vertex. `None` if the piece is culled.
+    /// The piece of the clipped triangle that comes next, once.
     #[cold]
     #[inline(never)]
-    fn piece<'c>(&self, cache: &'c VertexCache<'_>) -> Option<Oriented<'c>> {
-        Oriented::new(piece(&cache.vertices, cache.pieces.into())?, self.cull)
+    fn piece<'c>(&self, cache: &'c mut VertexCache<'_>) -> Option<Oriented<'c>> {
+        if !core::mem::take(&mut cache.has_piece) {
+            return None;
+        }
+        Oriented::new(piece(cache.polygon(), cache.piece.into())?, self.cull)
     }
 }
 
@@ -278,7 +303,7 @@ pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache<'_>,
     // The cache may hold a vertex twice: both are lit.
     for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
         if polygon_corners == 0 && indices.contains(owner) {
-            vertex.set_attributes(assembler.mesh.vertex(*owner), assembler.coloring);
+            vertex.set_attributes(assembler.mesh.vertex(*owner), &assembler.coloring);
             dim(&mut vertex.color, light);
         } else if i < polygon_corners {
             dim(&mut vertex.color, light);

@@ -40,7 +40,6 @@ use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip};
-use super::vertex_colors::VertexColors;
 use crate::num::{I12F4, I16F16, U8F8, mul_long, wide};
 use crate::scene::Vertex;
 use core::mem;
@@ -142,27 +141,35 @@ fn swap<T>(all: &mut [T], first: usize, last: usize) {
 
 impl Clip {
     /// Clips a triangle and puts what is left of it on the screen, as a fan around its first vertex. Returns how many corners
-    /// that has, and whether it is [folded](super::fan).
+    /// that has, and whether it is [folded](super::fan). `to` begins with the attributes of the corners.
     #[cold]
     #[inline(never)]
     pub(crate) fn cut(
         &self,
         to_clip: &ToClip,
-        coloring: &VertexColors<'_>,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
     ) -> (usize, bool) {
         let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
         let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
         for (i, vertex) in corners.into_iter().enumerate() {
-            self.start(to_clip, coloring, vertex, &mut polygon, i);
+            self.start(to_clip, vertex, &mut polygon, i);
         }
         // A side outside of which no vertex lies cuts nothing off.
         let outside = (0..3).fold(0, |all, i| all | Self::outside(&polygon, i));
-        for side in 0..6 {
-            if outside >> side & 1 != 0 {
-                self.cut_by(&mut polygon, side);
+        let mut side = 0;
+        while outside >> side != 0 {
+            if outside >> side & 1 != 0
+                && let Some(stay) = Self::open(&mut polygon, side)
+            {
+                // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
+                // most: there is room for one per plane.
+                let last = polygon.count - 1;
+                self.cross(&mut polygon, [0, last, stay + 1], side);
+                self.cross(&mut polygon, [stay - 1, stay, stay], side);
+                polygon.count = stay + 2;
             }
+            side += 1;
         }
         let count = polygon.count;
         for i in 0..count {
@@ -173,16 +180,9 @@ impl Clip {
         (count, is_folded)
     }
 
-    /// Sets corner `i` to a vertex of the triangle: clip coordinates, attributes and, if it needs no clipping, its position.
+    /// Sets corner `i` to a vertex of the triangle: clip coordinates and, if it needs no clipping, its position.
     #[inline(never)]
-    fn start(
-        &self,
-        to_clip: &ToClip,
-        coloring: &VertexColors<'_>,
-        vertex: &Vertex,
-        polygon: &mut Polygon<'_>,
-        i: usize,
-    ) {
+    fn start(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, i: usize) {
         let mut may_be_inside = true;
         if self.is_fine {
             for axis in [2, 0, 1] {
@@ -203,7 +203,6 @@ impl Clip {
         let Some(to) = polygon.vertices.get_mut(i) else {
             return;
         };
-        to.set_attributes(vertex, coloring);
         // `place_bare` may overwrite it.
         let outside = to.y;
         // The first condition saves that work: most often such a vertex is behind the eye.
@@ -309,32 +308,28 @@ impl Clip {
         }
     }
 
-    /// Clips a convex polygon by one plane. It may be left with no corners.
+    /// Rotates a convex polygon so that it begins with those corners that lie inside a plane. Returns how many: then there are one or
+    /// more outside. `None` if there are not, or all are: then the polygon is left with no corners.
     #[inline(never)]
-    fn cut_by(&self, polygon: &mut Polygon<'_>, side: usize) {
+    fn open(polygon: &mut Polygon<'_>, side: usize) -> Option<usize> {
         let count = polygon.count;
         let mut outside = 0_u32;
         for i in 0..count {
             outside |= (Self::outside(polygon, i) >> side & 1) << i;
         }
         if outside == 0 {
-            return;
+            return None;
         }
         if outside == (1 << count) - 1 {
             polygon.count = 0;
-            return;
+            return None;
         }
-        // Rotates it so that it begins with those inside: with the one that follows one outside.
+        // With the one that follows one outside.
         let outside = outside | outside << count; // twice around
         let first_out = outside.trailing_zeros();
         let first = first_out + (outside >> first_out).trailing_ones();
         polygon.rotate(if first < count as u32 { first as usize } else { first as usize - count });
-        // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
-        // most: there is room for one per plane.
-        let stay = (outside >> first).trailing_zeros() as usize;
-        self.cross(polygon, [0, count - 1, stay + 1], side);
-        self.cross(polygon, [stay - 1, stay, stay], side);
-        polygon.count = stay + 2;
+        Some((outside >> first).trailing_zeros() as usize)
     }
 
     /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.

@@ -13,7 +13,7 @@ mod transform;
 mod vertex_colors;
 mod whole;
 
-pub(crate) use assembly::{Assembler, VertexCache};
+pub(crate) use assembly::{Assembler, Clipped, VertexCache};
 pub(crate) use clip::Clip;
 pub use coloring::Coloring;
 pub(crate) use cut::MOST_CORNERS;

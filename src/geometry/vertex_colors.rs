@@ -7,6 +7,7 @@
 //! Light is computed per vertex (smooth shading) or per triangle (flat shading). With flat shading a vertex's colour comes out
 //! unlit. The caller multiplies it by the light on the face, anew for each face that the vertex belongs to.
 
+use super::screen::ScreenVertex;
 use crate::math::Pose;
 use crate::num::U8F8;
 use crate::scene::{Lighting, Lights, Vertex};
@@ -14,7 +15,7 @@ use crate::scene::{Lighting, Lights, Vertex};
 /// The functions that compute light, by reference: the linker drops lighting from programs that do not name it.
 #[derive(Debug)]
 pub(super) struct LightCode {
-    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose, &mut bool) -> Lighting<'p>,
+    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose, &mut Lighting<'p>) -> bool,
     shading: Shading,
 }
 
@@ -47,27 +48,9 @@ pub(super) struct Light<'p> {
     is_gray: bool,
 }
 
-impl<'p> Light<'p> {
-    /// Lights brought to a mesh in this pose.
-    pub(super) fn new(
-        code: &'static LightCode,
-        lights: &Lights<'_>,
-        pose: &'p Pose,
-        two_sided: bool,
-    ) -> Self {
-        let mut is_gray = false;
-        Self {
-            lighting: (code.bring)(lights, pose, &mut is_gray),
-            shading: &code.shading,
-            two_sided,
-            is_gray,
-        }
-    }
-}
-
 /// Lights brought to a mesh in this pose, and whether they are grey.
-fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, are_gray: &mut bool) -> Lighting<'p> {
-    lights.brought(pose, are_gray)
+fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
+    lights.bring(pose, to)
 }
 
 /// A colour times the light at its vertex. (White is the light itself.)
@@ -86,9 +69,26 @@ fn at_face(light: &Light<'_>, corners: [&Vertex; 3]) -> [U8F8; 3] {
 }
 
 impl<'p> VertexColors<'p> {
-    /// `base`, or the vertices' own colour if that is `None`, times the light on a mesh in this pose.
-    pub(super) fn new(base: Option<[u8; 3]>, light: Option<Light<'p>>) -> Self {
-        Self { base, light }
+    /// `base`, or the vertices' own colour if that is `None`.
+    pub(super) fn unlit(base: Option<[u8; 3]>) -> Self {
+        Self { base, light: None }
+    }
+
+    /// Adds the light on a mesh in this pose. In place, so that nothing is copied.
+    pub(super) fn light(
+        &mut self,
+        code: &'static LightCode,
+        lights: &Lights<'_>,
+        pose: &'p Pose,
+        two_sided: bool,
+    ) {
+        let light = self.light.insert(Light {
+            lighting: Lighting::DARK,
+            shading: &code.shading,
+            two_sided,
+            is_gray: false,
+        });
+        light.is_gray = (code.bring)(lights, pose, &mut light.lighting);
     }
 
     /// Whether all of them are grey, if those of the mesh's vertices are, or are not.
@@ -107,6 +107,20 @@ impl<'p> VertexColors<'p> {
             }
             _ => *to = color.map(U8F8::from_num),
         }
+    }
+
+    /// Sets the attributes of a triangle's corners, before it is cut.
+    #[cold]
+    pub(crate) fn of_corners(&self, corners: [&Vertex; 3], to: &mut [ScreenVertex]) {
+        for (vertex, to) in corners.into_iter().zip(to) {
+            self.of_corner(vertex, to);
+        }
+    }
+
+    /// Not inlined, as loops of three are unrolled.
+    #[inline(never)]
+    fn of_corner(&self, vertex: &Vertex, to: &mut ScreenVertex) {
+        to.set_attributes(vertex, self);
     }
 
     /// Whether shading is flat: colours are still to be multiplied by the light [on their face](VertexColors::on_face).

@@ -48,13 +48,22 @@ const MOST_BITS: u32 = 15;
 const FARTHEST: i32 = 640 * 16;
 
 impl Placing {
+    /// Of no mesh.
+    pub(crate) const ZERO: Self = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
+
     /// Inlined, so that nothing is copied.
     #[inline(always)]
     pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        let mut placing = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
-        placing.to_clip.set(projection, camera, pose);
-        placing.clip = Clip::new(projection, placing.to_clip.unit_bits());
+        let mut placing = Self::ZERO;
+        placing.set(projection, camera, pose);
         placing
+    }
+
+    /// Sets one that is [`ZERO`](Self::ZERO), in place.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
+        self.to_clip.set(projection, camera, pose);
+        self.clip = Clip::new(projection, self.to_clip.unit_bits());
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.

@@ -23,98 +23,99 @@ pub(crate) fn rows_of_folded(polygon: &[ScreenVertex], window: &Window) -> Range
     first_center(low).max(window.rows.start)..first_center(high).min(window.rows.end)
 }
 
-/// The runs of a folded polygon in a window, one after another: row by row, in a row triangle by triangle, and each from left
-/// to right.
-pub(crate) struct Runs<'a> {
-    polygon: &'a [ScreenVertex],
-    /// The current triangle of the fan.
-    number: usize,
-    window: Window,
-    /// The current row, and those still to come.
-    rows: Range<i32>,
-    /// For each triangle of the fan, in the current row: how many pixel centres lie left of its edge that goes up, and of the
-    /// one that goes down. The triangle covers the centres between these two columns. It runs clockwise if the first is less.
-    sides: [[i32; 2]; MOST_CORNERS - 2],
+/// How far the runs of a folded polygon in a window were looked for. They come row by row, in a row triangle by triangle, and each
+/// from left to right.
+pub(crate) struct Runs {
+    row: i16,
     /// The column in which the current triangle continues.
-    column: i32,
+    column: i16,
+    /// The current triangle of the fan.
+    number: u8,
 }
 
-impl<'a> Runs<'a> {
-    #[inline(always)]
-    pub(crate) fn new(polygon: &'a [ScreenVertex], window: &Window) -> Self {
-        let mut runs = Self {
-            polygon,
-            number: 0,
-            window: window.clone(),
-            rows: 0..0,
-            sides: [[0; 2]; MOST_CORNERS - 2],
-            column: 0,
-        };
-        runs.rows = rows_of_folded(polygon, window);
-        runs.start_row();
+impl Runs {
+    /// None yet.
+    pub(crate) fn new(polygon: &[ScreenVertex], window: &Window) -> Self {
+        let mut runs = Self { row: 0, column: 0, number: 0 };
+        runs.start_row(rows_of_folded(polygon, window).start, window);
         runs
     }
 
+    /// Which triangle of the fan draws the last run.
+    pub(crate) fn number(&self) -> usize {
+        self.number.into()
+    }
+
     /// The next run, as a window, and the corners of the triangle that draws it.
+    ///
+    /// The row's sides are found anew with each run: kept, they would be on the stack while a run is drawn.
     #[cold]
     #[inline(never)]
-    pub(crate) fn next(&mut self) -> Option<(Window, [&'a ScreenVertex; 3])> {
+    pub(crate) fn next<'a>(
+        &mut self,
+        polygon: &'a [ScreenVertex],
+        window: &Window,
+    ) -> Option<(Window, [&'a ScreenVertex; 3])> {
+        let end_of_rows = rows_of_folded(polygon, window).end;
+        let mut sides = [[0; 2]; MOST_CORNERS - 2];
+        let sides = sides.get_mut(..polygon.len().checked_sub(2)?)?;
         loop {
-            let corners = match piece(self.polygon, self.number) {
-                Some(corners) if !self.rows.is_empty() => corners,
-                _ => return None,
-            };
-            let row = self.rows.start;
-            let sides = self.sides.get(..self.polygon.len() - 2)?;
-            let &[up, down] = sides.get(self.number)?;
-            let (start, mut end) = (self.column.max(up.min(down)), up.max(down).min(self.window.columns.end));
-            // Nothing is left of the triangle in this row: on to the next one, or to the next row.
-            if start >= end {
-                self.number += 1;
-                self.column = self.window.columns.start;
-                if self.number == sides.len() {
-                    self.number = 0;
-                    self.rows.start += 1;
-                    self.start_row();
-                }
-                continue;
+            let row = i32::from(self.row);
+            if row >= end_of_rows {
+                return None;
             }
-            // Up to `end` the same triangles cover all pixels: it is moved to the left where one of them begins or ends
-            // before. `around` is their sum; `is_first` says that none with a lower number has the sign of this one.
-            let (mut around, mut is_first) = (0, true);
-            for (i, &[left, right]) in sides.iter().enumerate() {
-                let (first, behind) = (left.min(right), left.max(right));
-                if start < first {
-                    end = end.min(first);
-                } else if start < behind {
-                    end = end.min(behind);
-                    around += if left < right { 1 } else { -1 };
-                    is_first &= i >= self.number || (left < right) != (up < down);
+            set_sides(sides, polygon, row);
+            while usize::from(self.number) < sides.len() {
+                if let Some(columns) = self.next_in_row(sides, window) {
+                    let corners = piece(polygon, self.number.into())?;
+                    return Some((Window { columns, rows: row..row + 1 }, corners));
                 }
             }
-            self.column = end;
-            if is_first && (if up < down { around } else { -around }) > 0 {
-                return Some((Window { columns: start..end, rows: row..row + 1 }, corners));
-            }
+            self.start_row(row + 1, window);
         }
     }
 
-    /// Sets `sides` of a triangle in the current row.
-    #[inline(never)]
-    fn set_sides(&mut self, number: usize, corners: [&ScreenVertex; 3]) {
-        if let Some(sides) = self.sides.get_mut(number) {
-            *sides = [side(self.rows.start, corners, true), side(self.rows.start, corners, false)];
+    /// Looks at some more columns of the current triangle, or goes on to the next one. They are returned if it draws them.
+    #[inline]
+    fn next_in_row(&mut self, sides: &[[i32; 2]], window: &Window) -> Option<Range<i32>> {
+        let number = usize::from(self.number);
+        let &[up, down] = sides.get(number)?;
+        let (start, mut end) =
+            (i32::from(self.column).max(up.min(down)), up.max(down).min(window.columns.end));
+        if start >= end {
+            (self.number, self.column) = (self.number + 1, window.columns.start as i16);
+            return None;
         }
+        // Up to `end` the same triangles cover all pixels: it is moved to the left where one of them begins or ends
+        // before. `around` is their sum; `is_first` says that none with a lower number has the sign of this one.
+        let (mut around, mut is_first) = (0, true);
+        for (i, &[left, right]) in sides.iter().enumerate() {
+            let (first, behind) = (left.min(right), left.max(right));
+            if start < first {
+                end = end.min(first);
+            } else if start < behind {
+                end = end.min(behind);
+                around += if left < right { 1 } else { -1 };
+                is_first &= i >= number || (left < right) != (up < down);
+            }
+        }
+        self.column = end as i16;
+        (is_first && (if up < down { around } else { -around }) > 0).then_some(start..end)
     }
 
-    /// Sets `sides` of all triangles in the current row, and begins at its left end.
-    #[inline(never)]
-    fn start_row(&mut self) {
-        self.column = self.window.columns.start;
-        let mut number = 0;
-        while let Some(corners) = piece(self.polygon, number) {
-            self.set_sides(number, corners);
-            number += 1;
+    /// Begins at the left end of a row.
+    fn start_row(&mut self, row: i32, window: &Window) {
+        *self = Self { row: row as i16, column: window.columns.start as i16, number: 0 };
+    }
+}
+
+/// Sets the sides of all triangles of a polygon's fan in a row: how many pixel centres lie left of its edge that goes up, and of the
+/// one that goes down. The triangle covers the centres between these two columns. It runs clockwise if the first is less.
+#[inline(never)]
+fn set_sides(sides: &mut [[i32; 2]], polygon: &[ScreenVertex], row: i32) {
+    for (number, sides) in sides.iter_mut().enumerate() {
+        if let Some(corners) = piece(polygon, number) {
+            *sides = [side(row, corners, true), side(row, corners, false)];
         }
     }
 }
@@ -183,7 +184,7 @@ mod tests {
             for cull in [Cull::Back, Cull::Front, Cull::None] {
                 let mut times = [[0; 16]; 16];
                 let mut runs = Runs::new(&polygon, &window);
-                while let Some((run, corners)) = runs.next() {
+                while let Some((run, corners)) = runs.next(&polygon, &window) {
                     assert!(run.rows.len() == 1 && !run.columns.is_empty());
                     if cull.leaves_out(area(corners.map(position))) {
                         continue;

@@ -11,7 +11,6 @@ use super::plane::Plane;
 use super::scaling::Scaling;
 use super::straight::{Bend, Straight};
 use super::triangle::{STRAIGHT, TriangleSetup};
-use crate::geometry::{ScreenVertex, position};
 use crate::num::{mul_16, mul_16_signed};
 
 impl TriangleSetup {
@@ -24,14 +23,14 @@ impl TriangleSetup {
         let is_level = needs.is_exactly_straight(least, most);
         if let Straight::Below(limit) = needs.straight
             && !is_level
-            && !Bend::new(&gradients.edges, q).is_some_and(|bend| bend.is_straight(limit))
+            && !Bend::new(&gradients.edges, q).is_some_and(|bend| bend.is_straight(limit.get()))
         {
             return false;
         }
         if needs.scale != 0 && !needs.are_narrow(vertices) {
             return false;
         }
-        self.hold(vertices);
+        self.hold();
         self.is_held = true;
         if needs.reads_color() {
             self.set_gray(vertices, needs.gray);
@@ -72,9 +71,8 @@ impl TriangleSetup {
     }
 
     /// Begins a triangle whose rows are held.
-    fn hold(&mut self, vertices: &[&ScreenVertex; 3]) {
+    fn hold(&mut self) {
         self.longest = STRAIGHT;
-        self.corners = vertices.map(position);
     }
 
     /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
@@ -95,7 +93,7 @@ impl TriangleSetup {
         let Some(slopes_of_q) = bend.slopes(self.z.steps) else {
             return false;
         };
-        self.hold(vertices);
+        self.hold();
         self.is_bent = true;
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.

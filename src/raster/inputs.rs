@@ -43,6 +43,6 @@ impl UvCode {
         bend: TriangleSetup::bend,
         complete_held: TriangleSetup::complete_held_uv,
         complete: TriangleSetup::settle,
-        scaling: Needs::scaled_for,
+        scale: Needs::scale_for,
     };
 }

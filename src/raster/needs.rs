@@ -10,7 +10,6 @@
 use super::gradients::Gradients;
 use super::packing::Packing;
 use super::scaling::Scaling;
-use super::spans::SmallEdges;
 use super::straight::Straight;
 use super::triangle::TriangleSetup;
 use crate::geometry::{Inputs, Oriented, ScreenVertex};
@@ -19,8 +18,8 @@ use core::fmt;
 /// The functions that set up what a shader reads.
 pub(crate) struct InputCode {
     pub(crate) inputs: Inputs,
-    /// All planes of a small triangle, of which twice the area is given. False, and they are of no use, if the general way has to.
-    pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &SmallEdges, u32, &Needs) -> bool,
+    /// All planes of a small triangle whose corners are set, and twice its area given. False, and they are of no use, if the general way has to.
+    pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs) -> bool,
     /// All planes of any triangle, the nearest vertex of which is first.
     pub(super) any: fn(&mut TriangleSetup, &Oriented<'_>, &Needs),
     pub(super) uv: Option<UvCode>,
@@ -39,7 +38,7 @@ pub(super) struct UvCode {
     /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.
     pub(super) complete: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &Scaling, Option<i32>),
     /// Where their scale is applied.
-    pub(super) scaling: fn(&Needs, &[&ScreenVertex; 3]) -> Scaling,
+    pub(super) scale: fn(&Needs, &[&ScreenVertex; 3], &mut Scaling),
 }
 
 impl PartialEq for InputCode {
@@ -78,7 +77,7 @@ pub(crate) struct Needs {
     /// Whether perspective is exact at every pixel.
     pub(crate) every_pixel: bool,
     /// u and v are multiplied by 2^this, 0 … 8.
-    pub(crate) scale: u32,
+    pub(crate) scale: u8,
     /// How u and v are packed, before they are scaled.
     pub(crate) unscaled_packing: Packing,
     /// How they are packed with all of the scale, as small triangles have it.
@@ -86,12 +85,14 @@ pub(crate) struct Needs {
     /// How far u and v of small triangles keep from the ends of their range, 1/256 texel.
     pub(crate) margins: [u8; 2],
     /// How much a colour may be off by, in levels of 1/255: a step of the format's finest channel.
-    pub(crate) color_step: u32,
+    pub(crate) color_step: u8,
     /// Whether depth is tested.
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
     pub(crate) gray: bool,
 }
+
+const _: () = assert!(size_of::<Needs>() <= 24 + size_of::<usize>());
 
 impl Needs {
     /// Whether attributes are exactly linear on the screen where a triangle's corners have these least and greatest q.
@@ -137,25 +138,25 @@ impl Needs {
     /// All of it before planes are made.
     #[inline]
     pub(super) fn scaled_at_once(&self) -> Scaling {
-        self.scaled([self.scale as u8; 2])
+        self.scaled([self.scale; 2])
     }
 
     /// As much before planes are made as there is room for: their rounding is multiplied by the rest.
     #[cold]
     #[inline(never)]
-    pub(super) fn scaled_for(&self, vertices: &[&ScreenVertex; 3]) -> Scaling {
+    pub(super) fn scale_for(&self, vertices: &[&ScreenVertex; 3], scaling: &mut Scaling) {
         let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        self.scaled([0, 1].map(|i| {
+        *scaling = self.scaled([0, 1].map(|i| {
             let size =
                 (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
             // Differences stay below 2²⁹.
-            size.leading_zeros().saturating_sub(3).min(self.scale) as u8
-        }))
+            size.leading_zeros().saturating_sub(3).min(self.scale.into()) as u8
+        }));
     }
 
     #[inline(never)]
     fn scaled(&self, finer: [u8; 2]) -> Scaling {
-        let rest = finer.map(|finer| self.scale as u8 - finer);
+        let rest = finer.map(|finer| self.scale - finer);
         Scaling::new(finer, rest, &self.unscaled_packing)
     }
 

@@ -26,8 +26,9 @@
 //!
 //! Both are exact.
 
-use super::spans::Spans;
+use super::spans::{SmallEdges, Spans};
 use crate::frame::{Window, first_center};
+use crate::geometry::{ScreenVertex, position};
 use crate::math::recip::Reciprocal;
 use core::ops::Range;
 
@@ -85,6 +86,16 @@ pub(crate) enum Rows {
     Long(LongRows),
 }
 
+/// What became of a triangle that may be small.
+pub(super) enum Small {
+    /// It is, and its rows are found.
+    Rows,
+    /// It has no pixels in the window.
+    Hidden,
+    /// It is not small.
+    Not,
+}
+
 /// The rows of a triangle of any size.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LongRows {
@@ -105,16 +116,26 @@ impl Rows {
     /// Of no triangle.
     pub(crate) const NONE: Self = Self::Short(Spans::NONE);
 
-    /// The rows of a small triangle, to be started.
-    #[inline(always)]
-    pub(crate) fn short(&mut self) -> Option<&mut Spans> {
+    /// Starts a triangle if it is small, from its uppermost corner on, and sets its corners.
+    #[inline(never)]
+    pub(super) fn start_small(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        window: &Window,
+        corners: &mut [[i32; 2]; 3],
+    ) -> Small {
+        let at = vertices.map(position);
+        let Some(edges) = SmallEdges::of(at) else {
+            return Small::Not;
+        };
         if let Self::Long(_) = self {
             *self = Self::NONE;
         }
-        match self {
-            Self::Short(spans) => Some(spans),
-            Self::Long(_) => None,
-        }
+        let Self::Short(spans) = self else {
+            return Small::Not;
+        };
+        *corners = at;
+        if spans.start(&edges, window) { Small::Rows } else { Small::Hidden }
     }
 
     /// Starts a triangle of any size, whose corners run clockwise. False if it has no rows, or only one, and that is empty. (True

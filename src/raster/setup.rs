@@ -59,30 +59,22 @@ use crate::geometry::{Oriented, position};
 use crate::math::recip::Reciprocal;
 use crate::num::{normalise, shift_round_short, wide};
 
-/// What all attributes of a bent triangle have in common: for set-up only.
-struct BentTriangle<'a> {
-    needs: &'a Needs,
-    scaling: &'a Scaling,
-    slopes: &'a Slopes,
-    /// At the corners, scaled so that the nearest has 31 bits.
-    q: [u32; 3],
-    /// 1/(the step of q along a row), from that normalised.
-    reciprocal: i32,
-}
-
 impl TriangleSetup {
     /// Sets the plane of depth of any triangle, the nearest vertex of which is first, and those of attributes if any is read:
     /// [`InputCode::any`](super::needs::InputCode).
+    ///
+    /// What is long is called from here, one after another, so that it is not on the stack together.
     #[inline(never)]
     pub(super) fn set<const READS: bool>(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        self.corners = triangle.vertices.map(position);
+        let vertices = &triangle.vertices;
+        self.corners = vertices.map(position);
         (self.is_small, self.sliver, self.leans, self.straight) = (false, false, false, true);
         if !READS && !needs.depth {
             return;
         }
         self.area = Reciprocal::precise(triangle.area);
         let mut slopes = Slopes::new(self, triangle.area);
-        let near_w = triangle.vertices.map(|vertex| vertex.q.to_bits());
+        let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
         let up = normalise(q[0]).1 - 1;
@@ -100,17 +92,18 @@ impl TriangleSetup {
         if !READS {
             return;
         }
-        let vertices = &triangle.vertices;
-        let scaling = match &needs.code.uv {
-            Some(uv) if needs.scale != 0 => (uv.scaling)(needs, vertices),
-            _ => needs.scaled_at_the_end(),
-        };
+        let mut scaling = needs.scaled_at_the_end();
+        if let Some(uv) = &needs.code.uv
+            && needs.scale != 0
+        {
+            (uv.scale)(needs, vertices, &mut scaling);
+        }
         if needs.reads_color() {
             self.set_gray(vertices, needs.gray);
         }
         let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
         self.straight = match needs.straight {
-            Straight::Below(limit) if !is_exact => self.is_straight(&q, limit),
+            Straight::Below(limit) if !is_exact => self.is_straight(&q, limit.get()),
             _ => true,
         };
         let reciprocal = if self.straight {
@@ -120,17 +113,24 @@ impl TriangleSetup {
             self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
             self.set_q_step(needs.every_pixel)
         };
-        let bent = BentTriangle { needs, scaling: &scaling, slopes: &slopes, q, reciprocal };
         needs.each_attribute(&scaling, vertices, self.gray, |i, at, scale_log2| {
             let Some(attribute) = self.attributes.get_mut(i) else {
                 return false;
             };
-            let rise = attribute.set_range(at, scale_log2);
-            if self.straight {
-                attribute.plane.origin = attribute.origin();
-                slopes.set_plane(&mut attribute.plane, rise);
-            } else {
-                self.set_bent_attribute(i, rise, &bent);
+            let mut rise = attribute.set_range(at, scale_log2);
+            attribute.plane.origin = attribute.origin();
+            if !self.straight {
+                self.begin_bent(i, &mut rise, &q, needs, &scaling);
+            }
+            let Some(attribute) = self.attributes.get_mut(i) else {
+                return false;
+            };
+            slopes.set_plane(&mut attribute.plane, rise);
+            if !self.straight && !(self.sliver && needs.every_pixel) {
+                // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
+                let inset = u32::from(scaling.packing(1).inset);
+                let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
+                attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
             }
             true
         });
@@ -167,30 +167,25 @@ impl TriangleSetup {
         (units * (greatest >> 16)) >> 12 >= self.q_min >> 16
     }
 
-    /// Sets an attribute of a bent triangle, whose range is set, from how much it rises from corner 0 to 1 and 2, I16F16.
+    /// Sets an attribute of a bent triangle, whose range is set, but for its plane and its horizon. Takes how much it rises from corner 0
+    /// to 1 and 2, I16F16, and makes it what the plane does.
     #[inline(never)]
-    fn set_bent_attribute(&mut self, i: usize, rise: [i32; 2], bent: &BentTriangle<'_>) {
+    fn begin_bent(&mut self, i: usize, rise: &mut [i32; 2], q: &[u32; 3], needs: &Needs, scaling: &Scaling) {
         let Some(attribute) = self.attributes.get_mut(i) else {
             return;
         };
-        let &BentTriangle { needs, scaling, slopes, q, reciprocal } = bent;
-        let rise = contract(attribute, rise, i, scaling, self.is_extreme);
+        *rise = contract(attribute, *rise, i, scaling, self.is_extreme);
         attribute.plane.origin = 0;
         if self.sliver && needs.every_pixel {
             // For `resolve_in_sliver`.
-            return slopes.set_plane(&mut attribute.plane, rise);
+            return;
         }
         let products = [wide(rise[0], q[1] as i32), wide(rise[1], q[2] as i32)];
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger, and not quite 2³⁰.
         let (_, zeros) = normalise(((largest + (largest >> 15)) >> 30) as u32 | 1);
         attribute.shift = zeros as i32;
-        slopes
-            .set_plane(&mut attribute.plane, products.map(|product| shift_round_short(product, 32 - zeros)));
-        // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
-        let inset = u32::from(scaling.packing(1).inset);
-        let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
-        attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
+        *rise = products.map(|product| shift_round_short(product, 32 - zeros));
     }
 }
 

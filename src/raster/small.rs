@@ -43,22 +43,21 @@
 
 use super::gradients::Gradients;
 use super::needs::{ColorBend, Needs, SmallTriangle};
-use super::spans::SmallEdges;
 use super::straight::{Bend, Straight};
 use super::triangle::TriangleSetup;
 use crate::geometry::ScreenVertex;
 
 impl TriangleSetup {
-    /// Sets the plane of depth, and those of attributes if any is read: [`InputCode::small`](super::needs::InputCode).
+    /// Sets the plane of depth, and those of attributes if any is read, of a triangle whose corners are set: [`InputCode::small`](super::needs::InputCode).
     #[inline(never)]
     pub(super) fn set_small<const READS: bool>(
         &mut self,
         vertices: &[&ScreenVertex; 3],
-        edges: &SmallEdges,
         area: u32,
         needs: &Needs,
     ) -> bool {
-        let &SmallEdges { top, next: [bx, by], last: [cx, cy] } = edges;
+        let [top @ [x, y], next, last] = self.corners;
+        let ([bx, by], [cx, cy]) = ([next[0] - x, next[1] - y], [last[0] - x, last[1] - y]);
         let size = |x: i32| x ^ (x >> 31);
         self.is_small = true;
         (self.is_held, self.is_bent, self.sliver) = (false, false, false);
@@ -84,7 +83,7 @@ impl TriangleSetup {
         if fall >= 1 << 27 {
             return false;
         }
-        let gradients = Gradients::new(top, [edges.next, edges.last], area);
+        let gradients = Gradients::new(top, [[bx, by], [cx, cy]], area);
         gradients.set_plane(&mut self.z, q, &[rise_b >> 8, rise_c >> 8]);
         if !READS {
             return true;
@@ -99,8 +98,8 @@ impl TriangleSetup {
         {
             let least = q.min(q_b).min(q_c);
             // As `Bend::is_needless`, with the largest difference for all edges: 26 bits, and 12 times 15 and a bit.
-            if (2 * largest) * ((fall >> 12) + 1) > ((least >> 16) * limit) >> 8 {
-                bend = ColorBend::new(fall, least, needs.color_step);
+            if (2 * largest) * ((fall >> 12) + 1) > ((least >> 16) * limit.get()) >> 8 {
+                bend = ColorBend::new(fall, least, needs.color_step.into());
             }
         } else if needs.code.uv.is_some() {
             return self.set_held(small);
@@ -111,8 +110,8 @@ impl TriangleSetup {
             }
             if bend.is_needed()
                 && let Straight::Below(limit) = needs.straight
-                && !Bend::is_needless(&small.gradients.edges, small.q, limit)
-                && !(uv.bend)(self, small, limit)
+                && !Bend::is_needless(&small.gradients.edges, small.q, limit.get())
+                && !(uv.bend)(self, small, limit.get())
             {
                 return false;
             }

@@ -20,7 +20,6 @@
 //! [`side`].
 
 use crate::frame::{Window, first_center};
-use crate::geometry::ScreenVertex;
 use crate::math::recip::quotient_of_10_bits;
 
 /// The most rows of a small triangle, and its most columns.
@@ -37,12 +36,11 @@ pub(crate) struct SmallEdges {
 }
 
 impl SmallEdges {
-    /// Of corners that run clockwise from the uppermost on; `None` if the triangle is more than 32 pixels wide, or 32 or more
+    /// Of corners in 1/16 px that run clockwise from the uppermost on; `None` if the triangle is more than 32 pixels wide, or 32 or more
     /// high.
     #[inline(always)]
-    pub(crate) fn of([a, b, c]: [&ScreenVertex; 3]) -> Option<Self> {
-        let at = |vertex: &ScreenVertex| [i32::from(vertex.x.to_bits()), i32::from(vertex.y.to_bits())];
-        let (top @ [x, y], [bx, by], [cx, cy]) = (at(a), at(b), at(c));
+    pub(crate) fn of([top, [bx, by], [cx, cy]]: [[i32; 2]; 3]) -> Option<Self> {
+        let [x, y] = top;
         let (next, last) = ([bx - x, by - y], [cx - x, cy - y]);
         // A difference of −512 … 511 becomes 0 … 1023: no bit from 2¹⁰ on is set.
         let biased = |dx: i32| dx + (1 << 9);

@@ -35,6 +35,7 @@
 
 use crate::math::recip::short_of;
 use crate::num::mul_16;
+use core::num::NonZeroU32;
 
 /// Which triangles a quality draws as straight ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,8 +43,18 @@ pub enum Straight {
     /// All.
     Always,
     /// Those with 4 · error ≤ this, in pixels with 16 fraction bits, at most 1.0.
-    Below(u32),
+    Below(NonZeroU32),
 }
+
+impl Straight {
+    /// The limit of which [`Straight::Below`] is made. 0 is taken as 1.
+    pub(crate) const fn below(limit: u32) -> Self {
+        Self::Below(NonZeroU32::MIN.saturating_add(limit.saturating_sub(1)))
+    }
+}
+
+// The number that is not used says that it is the other one.
+const _: () = assert!(size_of::<Straight>() == 4);
 
 /// What the error of linear interpolation depends on, apart from the attribute. The edges are 01, 02 and 12, in this order.
 pub(crate) struct Bend {

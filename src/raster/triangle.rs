@@ -15,7 +15,7 @@ pub(crate) const ATTRIBUTES: usize = 5;
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
 pub(crate) struct TriangleSetup {
-    /// x and y in 1/16 px, clockwise on the screen; of a small triangle that is not held they are not set. The nearest is first, of a small
+    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
     /// triangle the uppermost.
     pub(crate) corners: [[i32; 2]; 3],
     /// 1 / (twice the area in 1/256 px²); not of small triangles.

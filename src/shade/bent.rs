@@ -19,73 +19,88 @@ use crate::raster::{Attribute, Place};
 const MOST_GENERAL: u32 = 63;
 
 impl Perspective<'_> {
-    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on.
+    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
     #[inline(never)]
     pub(super) fn bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        if self.setup.sliver {
-            return self.bent_in_sliver(x, y, steps);
-        }
         let near = self.near(x, y, steps);
-        self.bent_from(&near, steps)
+        let way = self.bent_from(&near, steps);
+        if self.setup.is_extreme && matches!(way, Way::Table | Way::Chords) {
+            self.set_by_far_end(&near, steps, &way);
+        }
+        way
     }
 
-    /// Likewise, from its near end. Not of a sliver.
+    /// Likewise, from its near end. Of an extreme triangle lines are set if they are straight, which are held in the range by themselves;
+    /// others are still to be set [from both ends](Self::set_by_far_end).
     #[inline(never)]
     pub(super) fn bent_from(&mut self, near: &Place, steps: u32) -> Way {
-        let (setup, rises) = (self.setup, self.setup.q_rises);
         let Some((way, w_step)) = self.start(near, steps) else {
             return Way::None;
         };
-        // A straight line is held in the range by itself.
-        if setup.is_extreme && !matches!(way, Way::Straight) {
-            let x = if rises { near.x - steps as i32 } else { near.x + steps as i32 };
-            let far = self.place(x, near.y);
-            self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(near), attribute.at(&far)]);
-        } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
-            let all = setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
-            for (i, (attribute, line)) in all.take(self.units.count) {
-                let (above, up) = (attribute.at(near), self.units.up(i, attribute));
-                let (from_horizon, log2) = from_horizon(attribute, above);
-                let u = attribute.least.wrapping_add(above);
-                let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
-                let at = (u << up).wrapping_sub(slope << ONE_LOG2) as u32;
-                *line = Linear { at, slope };
-            }
+        if self.setup.is_extreme && way != Way::Straight {
+            // Not by slopes.
+        } else if way == Way::Table && self.units.form == Form::Modular {
+            self.set_table(near);
         } else if steps > 0 {
-            self.set_by_slope(near, rises, steps, w_step, &way);
+            self.set_by_slope(near, self.setup.q_rises, steps, w_step, &way);
         } else {
-            self.set_pixel(&|attribute| attribute.at(near));
+            self.set_pixel(near, None);
         }
         way
+    }
+
+    /// In 1/w, from the horizon.
+    #[inline(never)]
+    fn set_table(&mut self, near: &Place) {
+        let all = self.setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
+        for (i, (attribute, line)) in all.take(self.units.count()) {
+            let (above, up) = (attribute.at(near), self.units.up(i));
+            let (from_horizon, log2) = from_horizon(attribute, above);
+            let u = attribute.least.wrapping_add(above);
+            let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
+            let at = (u << up).wrapping_sub(slope << ONE_LOG2) as u32;
+            *line = Linear { at, slope };
+        }
     }
 
     /// A sliver has no planes: its values at both ends come from weights.
     #[cold]
     #[inline(never)]
-    fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        let setup = self.setup;
-        if let Some(resolve) = self.units.in_sliver {
+    pub(super) fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        if self.units.in_sliver.is_some() {
             if steps > 0 {
                 return Way::None;
             }
-            self.set_pixel(&|attribute| resolve(setup, attribute, x, y));
+            self.resolve_in_sliver(x, y);
             return Way::Straight;
         }
-        let rises = setup.q_rises;
-        let [to_near, to_far] = if rises { [steps, 0] } else { [0, steps] };
-        let near = self.place_in_sliver(x + to_near as i32, y);
-        let Some((way, _)) = self.start(&near.0, steps) else {
+        let [to_near, to_far] = if self.setup.q_rises { [steps as i32, 0] } else { [0, steps as i32] };
+        let (mut place, mut weights) = self.place_in_sliver(x + to_near, y);
+        let Some((way, _)) = self.start(&place, steps) else {
             return Way::None;
         };
         if steps == 0 {
-            self.set_pixel(&|attribute| in_sliver(attribute, &near));
-        } else {
-            let far = self.place_in_sliver(x + to_far as i32, y);
-            self.set_by_both_ends(steps, rises, &way, &|attribute| {
-                [in_sliver(attribute, &near), in_sliver(attribute, &far)]
-            });
+            self.set_pixel(&place, Some(&weights));
+            return way;
         }
+        self.set_ends(&place, Some(&weights), true);
+        (place, weights) = self.place_in_sliver(x + to_far, y);
+        self.set_ends(&place, Some(&weights), false);
+        self.set_by_ends(steps, &way);
         way
+    }
+
+    /// One pixel of a sliver in the exact form.
+    #[inline(never)]
+    fn resolve_in_sliver(&mut self, x: i32, y: i32) {
+        let Some(resolve) = self.units.in_sliver else {
+            return;
+        };
+        for i in 0..self.units.count() {
+            if let Some(attribute) = self.setup.attributes.get(i) {
+                self.set_pixel_of(i, attribute, resolve(self.setup, attribute, x, y));
+            }
+        }
     }
 
     /// A pixel of a sliver and 1/q there, and by how much corners 1 and 2 count.
@@ -125,21 +140,26 @@ impl Perspective<'_> {
         }
     }
 
-    /// One pixel.
+    /// One pixel, which has weights in a sliver.
     #[inline(never)]
-    fn set_pixel(&mut self, at: &dyn Fn(&Attribute) -> i32) {
-        for (attribute, line) in
-            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count)
-        {
-            let u = attribute.least.wrapping_add(at(attribute));
-            *line = Linear { at: (u << attribute.scale_log2) as u32, slope: 0 };
+    fn set_pixel(&mut self, place: &Place, weights: Option<&[u32; 2]>) {
+        for i in 0..self.units.count() {
+            if let Some(attribute) = self.setup.attributes.get(i) {
+                self.set_pixel_of(i, attribute, at(attribute, place, weights));
+            }
         }
+    }
+
+    #[inline]
+    fn set_pixel_of(&mut self, i: usize, attribute: &Attribute, above: i32) {
+        let u = attribute.least.wrapping_add(above);
+        self.set_line(i, Linear { at: (u << attribute.scale_log2) as u32, slope: 0 });
     }
 
     /// The forms that take the change over a pixel: all but the table's.
     #[inline]
     fn set_by_slope(&mut self, near: &Place, rises: bool, steps: u32, (size, down): (u32, i32), way: &Way) {
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
+        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count()) {
             let above = attribute.at(near);
             let u = attribute.least.wrapping_add(above);
             // Over a pixel, away from the near end, times 2^−`log2`.
@@ -149,7 +169,7 @@ impl Perspective<'_> {
             match way {
                 Way::Straight => self.set_straight(i, attribute, above, rises, scaled(slope, log2), steps),
                 Way::Chords => {
-                    let up = self.units.up(i, attribute);
+                    let up = self.units.up(i);
                     let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
                     self.set_line(i, Linear { at: (u << up) as u32, slope });
                 }
@@ -198,16 +218,37 @@ impl Perspective<'_> {
         }
     }
 
-    /// From the values at both ends: so that the far one stays in the range, whatever the planes say.
+    /// Where planes may leave the range: slopes come from both ends.
     #[cold]
     #[inline(never)]
-    fn set_by_both_ends(
-        &mut self,
-        steps: u32,
-        rises: bool,
-        way: &Way,
-        ends: &dyn Fn(&Attribute) -> [i32; 2],
-    ) {
+    fn set_by_far_end(&mut self, near: &Place, steps: u32, way: &Way) {
+        self.set_ends(near, None, true);
+        let x = if self.setup.q_rises { near.x - steps as i32 } else { near.x + steps as i32 };
+        let far = self.place(x, near.y);
+        self.set_ends(&far, None, false);
+        self.set_by_ends(steps, way);
+    }
+
+    /// Leaves in each line how much more than the least there is at one end of a part: as `at` of the near end, as `slope` of the far one.
+    #[cold]
+    #[inline(never)]
+    fn set_ends(&mut self, place: &Place, weights: Option<&[u32; 2]>, is_near: bool) {
+        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
+        for (attribute, line) in all.take(self.units.count()) {
+            let above = at(attribute, place, weights);
+            if is_near {
+                line.at = above as u32;
+            } else {
+                line.slope = above;
+            }
+        }
+    }
+
+    /// From the [values at both ends](Self::set_ends): so that the far one stays in the range, whatever the planes say.
+    #[cold]
+    #[inline(never)]
+    fn set_by_ends(&mut self, steps: u32, way: &Way) {
+        let rises = self.setup.q_rises;
         // w at the far end.
         let w = if rises {
             self.curve.w
@@ -220,27 +261,25 @@ impl Perspective<'_> {
             (_, form) => distance(form, w, steps),
         };
         let t = Reciprocal::coarse(t);
-        let mantissa = t.mantissa_below();
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
-            let [above, above_far] = ends(attribute);
+        for i in 0..self.units.count() {
+            let (Some(attribute), Some(line)) = (self.setup.attributes.get(i), self.curve.lines.get(i))
+            else {
+                return;
+            };
+            let (above, above_far) = (line.at as i32, line.slope);
             let (u, rise) = (attribute.least.wrapping_add(above), above_far - above);
             // rise/t is the product times 2^(zeros − 62). Its upper half, cut towards zero.
-            let product = wide(rise, mantissa);
+            let product = wide(rise, t.mantissa_below());
             let quotient = scaled_wide(product, -32);
             let log2 = t.zeros as i32 - 30;
             match way {
                 Way::Straight => self.set_straight(i, attribute, above, rises, scaled(quotient, log2), steps),
                 _ if self.units.form != Form::Modular => {
-                    self.set_general(
-                        i,
-                        u,
-                        attribute.scale_log2,
-                        quotient,
-                        log2 + fraction_bits(self.units.form) as i32,
-                    );
+                    let log2 = log2 + fraction_bits(self.units.form) as i32;
+                    self.set_general(i, u, attribute.scale_log2, quotient, log2);
                 }
                 _ => {
-                    let up = self.units.up(i, attribute);
+                    let up = self.units.up(i);
                     let slope = scaled_wide(product, t.zeros as i32 - 62 + up as i32);
                     let one = if matches!(way, Way::Table) { slope << ONE_LOG2 } else { 0 };
                     self.set_line(i, Linear { at: (u << up).wrapping_sub(one) as u32, slope });
@@ -250,9 +289,15 @@ impl Perspective<'_> {
     }
 }
 
-/// How much more than the least an attribute is at a pixel of a sliver.
-fn in_sliver(attribute: &Attribute, (place, weights): &(Place, [u32; 2])) -> i32 {
-    attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
+/// How much more than the least an attribute is at a pixel: by its planes, or in a sliver by how much corners 1 and 2 count there.
+#[inline(never)]
+fn at(attribute: &Attribute, place: &Place, weights: Option<&[u32; 2]>) -> i32 {
+    match weights {
+        None => attribute.at(place),
+        Some(weights) => {
+            attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
+        }
+    }
 }
 
 /// How a part of so many steps is drawn, over each of which w changes by `w_step`, 32 fraction bits.
@@ -352,7 +397,7 @@ mod tests {
                     n += 8;
                 }
             }
-            Way::None => {}
+            Way::None | Way::Bent => {}
         }
         worst
     }
@@ -372,7 +417,7 @@ mod tests {
                         Way::Straight => 0,
                         Way::Table => 1,
                         Way::Chords => 2,
-                        Way::None => continue,
+                        Way::None | Way::Bent => continue,
                     };
                     worst[index] = worst[index].max(displacement(form, &way, w_step, steps));
                 }

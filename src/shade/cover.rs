@@ -36,7 +36,9 @@ pub(crate) struct Layers<F: PixelFormat, D: DepthFormat> {
 }
 
 /// The fog of a view.
-pub(crate) struct InFog<'a, F: PixelFormat, D: DepthFormat> {
+#[doc(hidden)]
+#[expect(missing_debug_implementations, reason = "it is passed on at once, or kept in a list")]
+pub struct InFog<'a, F: PixelFormat, D: DepthFormat> {
     pub(super) fogging: Fogging<'a, F>,
     /// Draws a triangle of an opaque surface.
     pub(super) draw_opaque: DrawFill<F, D>,

@@ -57,45 +57,56 @@ pub(super) enum Way {
     Chords,
     /// Not at one go: it is too long.
     None,
+    /// As [`Perspective::bent`] says.
+    Bent,
 }
 
-/// The rows of a triangle, for a fill.
+/// The rows of a triangle, for a fill. The fields are in the order in which Armv6-M reaches them with the fewest registers.
+#[repr(C)]
 pub(crate) struct Perspective<'a> {
     pub(super) setup: &'a TriangleSetup,
-    pub(super) units: Units,
     /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on: in the way that all rows of the triangle
     /// have in common. A part of one pixel is never too long.
     way: fn(&mut Self, x: i32, y: i32, steps: u32) -> Way,
-    /// By how much `near_horizon` shifts each attribute left: [`Units::up`], computed once. Of other ways 0.
-    ups: [u8; ATTRIBUTES],
+    /// Of bent triangles [scaled](Units::scaled).
+    pub(super) units: Units,
     /// The leading zeros of q at the last division, which those at the next are close to.
-    zeros: u32,
+    zeros: u8,
     pub(super) curve: Curve,
 }
 
 impl<'a> Perspective<'a> {
     #[inline(never)]
-    pub(crate) fn new(setup: &'a TriangleSetup, units: Units) -> Self {
-        let mut line =
-            Self { setup, units, way: Self::bent, ups: [0; ATTRIBUTES], zeros: 1, curve: Curve::default() };
+    pub(crate) fn new(setup: &'a TriangleSetup, mut units: Units) -> Self {
+        let way = Self::way_of(setup, &mut units);
+        Self { setup, way, units, zeros: 1, curve: Curve::default() }
+    }
+
+    /// The way of all rows of a triangle.
+    #[inline(never)]
+    fn way_of(setup: &TriangleSetup, units: &mut Units) -> fn(&mut Self, i32, i32, u32) -> Way {
         if setup.is_small {
-            line.way = Self::small;
-        } else if setup.straight {
-            line.way = Self::straight;
-        } else if setup.is_level {
-            line.way = Self::level;
-        } else if units.form == Form::Modular && !setup.is_extreme {
-            let mut fit_table = true;
-            let all = setup.attributes.iter().zip(&mut line.ups).enumerate();
-            for (i, (attribute, up)) in all.take(units.count) {
-                *up = units.up(i, attribute) as u8;
-                fit_table &= attribute.horizon().1 == 0 && u32::from(*up) <= ONE_LOG2;
-            }
-            if fit_table {
-                line.way = Self::near_horizon;
+            return Self::small;
+        }
+        if setup.straight {
+            return Self::straight;
+        }
+        let mut fits_table = units.form == Form::Modular && !setup.is_level && !setup.is_extreme;
+        if units.form == Form::Modular {
+            units.scale(&setup.attributes);
+            for (i, attribute) in setup.attributes.iter().enumerate().take(units.count()) {
+                fits_table &= attribute.horizon().1 == 0 && units.up(i) <= ONE_LOG2;
             }
         }
-        line
+        if fits_table {
+            Self::near_horizon
+        } else if setup.is_level {
+            Self::level
+        } else if setup.sliver {
+            Self::bent_in_sliver
+        } else {
+            Self::bent
+        }
     }
 
     /// q's mantissa at a pixel, 2³¹ … 2³² − 1, and its leading zeros. Not of a sliver.
@@ -120,14 +131,15 @@ impl<'a> Perspective<'a> {
     #[inline(always)]
     pub(super) fn mantissa_of(&mut self, q: u32) -> (u32, u32) {
         let q = self.setup.bounded(q);
-        let mantissa = q << self.zeros;
+        let zeros = u32::from(self.zeros);
+        let mantissa = q << (zeros & 31);
         // Most often q has as many leading zeros as at the last division. Armv6-M has no instruction that counts them.
-        if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> self.zeros == q {
-            return (mantissa, self.zeros);
+        if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> (zeros & 31) == q {
+            return (mantissa, zeros);
         }
         let (mantissa, zeros) = normalise(q);
         if IS_ARMV6M {
-            self.zeros = zeros;
+            self.zeros = zeros as u8;
         }
         (mantissa, zeros)
     }
@@ -146,23 +158,36 @@ impl<'a> Perspective<'a> {
         if way == Way::Chords {
             return fill.chords(pixels, &self.curve);
         }
-        self.draw_parts(x, y, pixels, fill);
+        self.draw_parts(x, y, pixels, fill, way == Way::Bent);
     }
 
-    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
+    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on. Not too many, but bent, they may be
+    /// at first: asked from here, `bent` is not on the stack together with what asks for it.
     #[cold]
     #[inline(never)]
-    fn draw_parts<W>(&mut self, mut x: i32, y: i32, mut pixels: &mut [W], fill: &dyn Fill<W>) {
-        let mut count = pixels.len().div_ceil(2);
+    fn draw_parts<W>(
+        &mut self,
+        mut x: i32,
+        y: i32,
+        mut pixels: &mut [W],
+        fill: &dyn Fill<W>,
+        are_bent: bool,
+    ) {
+        let mut count = if are_bent { pixels.len() } else { pixels.len().div_ceil(2) };
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
             let near_is_right = !self.setup.is_small && !self.setup.straight && self.setup.q_rises;
             let way = loop {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
-                match (self.way)(self, x + skipped as i32, y, count as u32 - 1) {
-                    Way::None => count = count.div_ceil(2),
-                    way => break way,
+                let (x, steps) = (x + skipped as i32, count as u32 - 1);
+                let way = match (self.way)(self, x, y, steps) {
+                    Way::Bent => self.bent(x, y, steps),
+                    way => way,
+                };
+                if way != Way::None {
+                    break way;
                 }
+                count = count.div_ceil(2);
             };
             let at = if near_is_right { all.len() - count } else { count };
             let Some((run, rest)) = all.split_at_mut_checked(at) else {
@@ -191,18 +216,18 @@ impl<'a> Perspective<'a> {
             // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
             let fall = steps * q_step.unsigned_abs();
             if steps * fall > m >> zeros >> 3 {
-                return self.bent(x, y, steps);
+                return Way::Bent;
             }
             // Taken as constant, q moves a row by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
             bends = fall > 1 << 12;
         }
         // `mul_17` takes steps below 2³⁰. Only a row of two pixels can have a greater one: it is drawn as two.
         let is_steep = |attribute: &Attribute| attribute.plane.steps[0].unsigned_abs() >> 30 != 0;
-        if steps == 1 && self.setup.attributes.iter().take(self.units.count).any(is_steep) {
+        if steps == 1 && self.setup.attributes.iter().take(self.units.count()).any(is_steep) {
             return Way::None;
         }
         let reciprocal = looked_up(m);
-        let (count, place) = (self.units.count, Place { x, y, reciprocal, zeros });
+        let (count, place) = (self.units.count(), Place { x, y, reciprocal, zeros });
         if bends {
             self.level_bending(&place, q_step, steps);
             return Way::Straight;
@@ -223,7 +248,7 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn level_bending(&mut self, place: &Place, q_step: i32, steps: u32) {
         let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
-        for (i, (attribute, line)) in all.enumerate().take(self.units.count) {
+        for (i, (attribute, line)) in all.enumerate().take(self.units.count()) {
             level_further(attribute, place, q_step, steps, i == 1, line);
         }
     }
@@ -243,15 +268,15 @@ impl<'a> Perspective<'a> {
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
         // Two without a loop, which would take as long as what is in it.
-        let (ups, lines) = (&self.ups, &mut self.curve.lines);
-        set_table(&setup.attributes[0], &near, ups[0].into(), &mut lines[0]);
-        let count = self.units.count;
+        let (units, lines) = (&self.units, &mut self.curve.lines);
+        set_table(&setup.attributes[0], &near, units.up(0), &mut lines[0]);
+        let count = units.count();
         if count > 1 {
-            set_table(&setup.attributes[1], &near, ups[1].into(), &mut lines[1]);
+            set_table(&setup.attributes[1], &near, units.up(1), &mut lines[1]);
         }
         if count > 2 {
             for i in 2..count.min(ATTRIBUTES) {
-                set_table_further(&setup.attributes[i], &near, ups[i].into(), &mut lines[i]);
+                set_table_further(&setup.attributes[i], &near, units.up(i), &mut lines[i]);
             }
         }
         Way::Table
@@ -264,7 +289,7 @@ impl<'a> Perspective<'a> {
         if (setup.is_held || setup.is_bent) && steps > setup.longest {
             return Way::None;
         }
-        for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count) {
+        for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count()) {
             let (at, slope) = setup.along(i, [x, y], steps);
             *line = Linear { at: at as u32, slope };
             black_box(());
@@ -276,7 +301,7 @@ impl<'a> Perspective<'a> {
     fn straight(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
         // Not unrolled.
-        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count) {
+        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count()) {
             let plane = setup.at(&attribute.plane, x, y);
             if setup.leans && steps > 0 && attribute.leaves(plane, steps as i32) {
                 // Up to where it leaves its range an exact attribute stays so.

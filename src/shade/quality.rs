@@ -29,12 +29,12 @@ pub struct QuarterPixel;
 pub struct Affine;
 
 impl Quality for Exact {
-    const STRAIGHT: Straight = Straight::Below((1 << 16) / 32);
+    const STRAIGHT: Straight = Straight::below((1 << 16) / 32);
     const EVERY_PIXEL: bool = true;
 }
 
 impl Quality for QuarterPixel {
-    const STRAIGHT: Straight = Straight::Below((1 << 16) / 4 * 3);
+    const STRAIGHT: Straight = Straight::below((1 << 16) / 4 * 3);
     const EVERY_PIXEL: bool = false;
 }
 

@@ -52,9 +52,9 @@ impl Traits {
     /// may all be grey.
     #[inline(never)]
     pub(crate) fn needs<F: PixelFormat>(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
-        let scale = self.scale_log2.into();
+        let scale = self.scale_log2;
         let packed_log2 = self.packed_log2.map(|log2| log2.map(u32::from));
-        let packing = Packing::new(packed_log2, scale, self.inputs());
+        let packing = Packing::new(packed_log2, scale.into(), self.inputs());
         let of_small = Packing::new(packed_log2, 0, self.inputs());
         Needs {
             code: self.code,
@@ -64,7 +64,7 @@ impl Traits {
             unscaled_packing: packing,
             margins: of_small.margins(),
             packing: of_small,
-            color_step: F::COLOR_STEP.into(),
+            color_step: F::COLOR_STEP,
             depth,
             gray: is_gray || self.is_gray,
         }

@@ -6,8 +6,6 @@
 
 use crate::raster::{ATTRIBUTES, Attribute, TriangleSetup};
 
-const _: () = assert!(ATTRIBUTES <= 8);
-
 /// How a fill takes attributes that follow perspective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
@@ -28,13 +26,15 @@ type InSliver = fn(&TriangleSetup, &Attribute, i32, i32) -> i32;
 /// further care, and colours, 0 … 255.996, are a texture of 256 texels.
 #[derive(Clone, Copy, Debug)]
 pub struct Units {
-    pub(crate) form: Form,
-    pub(crate) count: usize,
     /// Of the exact form: an attribute at a pixel of a sliver, I16F16. By reference, so that programs without it do not link it.
     pub(super) in_sliver: Option<InSliver>,
+    pub(crate) form: Form,
+    count: u8,
     /// By how much I16F16 is to be shifted left: 16 − a. Not of the general forms.
-    up: [u8; 8],
+    up: [u8; ATTRIBUTES],
 }
+
+const _: () = assert!(size_of::<Units>() <= 8 + size_of::<usize>());
 
 impl Units {
     /// I16F16.
@@ -45,21 +45,35 @@ impl Units {
         } else {
             (Form::General, None)
         };
-        Self { form, count, in_sliver, up: [0; 8] }
+        Self { in_sliver, form, count: count as u8, up: [0; ATTRIBUTES] }
     }
 
     /// Modular, with these numbers of integer bits.
     pub(crate) fn modular<const N: usize>(integer_bits: [u32; N]) -> Self {
-        let mut up = [0; 8];
+        let mut up = [0; ATTRIBUTES];
         for (up, bits) in up.iter_mut().zip(integer_bits) {
             *up = 16 - bits as u8;
         }
-        Self { form: Form::Modular, count: N, in_sliver: None, up }
+        Self { in_sliver: None, form: Form::Modular, count: N as u8, up }
     }
 
-    /// Bits to shift attribute `i` left: to the unit of the fill, and by its `scale_log2`.
+    /// How many attributes.
+    #[inline(always)]
+    pub(crate) fn count(&self) -> usize {
+        self.count.into()
+    }
+
+    /// Makes them those for attributes that come out without their `scale_log2`.
     #[inline]
-    pub(crate) fn up(&self, i: usize, attribute: &Attribute) -> u32 {
-        (u32::from(self.up[i & 7]) + attribute.scale_log2) & 31
+    pub(crate) fn scale(&mut self, attributes: &[Attribute]) {
+        for (up, attribute) in self.up.iter_mut().zip(attributes).take(self.count.into()) {
+            *up = (*up + attribute.scale_log2 as u8) & 31;
+        }
+    }
+
+    /// Bits to shift attribute `i` left to the unit of the fill.
+    #[inline]
+    pub(crate) fn up(&self, i: usize) -> u32 {
+        self.up.get(i).copied().unwrap_or(0).into()
     }
 }

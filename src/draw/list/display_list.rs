@@ -255,7 +255,7 @@ fn draw_folded<F: PixelFormat, D: DepthFormat>(
 ) {
     let mut corners = [ScreenVertex::default(); MOST_CORNERS];
     let polygon = view.polygon(folded, draw.look.traits.inputs(), draw.vertices, &mut corners);
-    raster.draw_folded(polygon, draw.cull, &mut ());
+    raster.draw_folded(polygon, draw.cull);
 }
 
 impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayList<'a, F, D, N> {
@@ -289,7 +289,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> Canvas<'a> for DisplayL
             }
             let draw = Draw {
                 look: surface.look,
-                fog,
+                fog: fog.copied(),
                 vertices: mesh.vertices(),
                 viewport: camera.projection().viewport,
                 end: self.triangles.len() as u16,

@@ -267,7 +267,8 @@ impl Recorder<'_, '_> {
         };
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
-        let (count, is_folded) = clip.cut(to_clip, &self.style.coloring, corners, &mut polygon);
+        self.style.coloring.of_corners(corners, &mut polygon);
+        let (count, is_folded) = clip.cut(to_clip, corners, &mut polygon);
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
         }

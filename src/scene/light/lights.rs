@@ -124,23 +124,29 @@ impl<'a> Lights<'a> {
     #[must_use]
     #[inline]
     pub fn in_mesh_space<'p>(&self, pose: &'p Pose) -> Lighting<'p> {
-        self.brought(pose, &mut false)
+        let mut lighting = Lighting::DARK;
+        self.bring(pose, &mut lighting);
+        lighting
     }
 
-    /// As [`Lights::in_mesh_space`], and says whether all of them are grey.
+    /// As [`Lights::in_mesh_space`], in place, so that nothing is copied; from a `lighting` that is [dark](Lighting::DARK). Whether all
+    /// lights are grey.
     #[inline(never)]
-    pub(crate) fn brought<'p>(&self, pose: &'p Pose, are_gray: &mut bool) -> Lighting<'p> {
-        let ambient = self.ambient;
-        *are_gray = is_gray(ambient);
-        let mut lighting =
-            Lighting { lights: [Local::NONE; MAX], count: 0, ambient, stretch: Stretch::of(pose) };
+    pub(crate) fn bring<'p>(&self, pose: &'p Pose, lighting: &mut Lighting<'p>) -> bool {
+        lighting.ambient = self.ambient;
+        let mut are_gray = is_gray(self.ambient);
+        lighting.stretch = Stretch::of(pose);
         let (axes, unit) = match &lighting.stretch {
             None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
             Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
         };
         for &Light { source, color } in self.lights {
-            *are_gray &= is_gray(color);
-            let light = match source {
+            are_gray &= is_gray(color);
+            // There is room: `try_new` counted.
+            let Some(to) = lighting.lights.get_mut(usize::from(lighting.count)) else {
+                break;
+            };
+            *to = match source {
                 Source::Directional(towards) => {
                     Local::Directional { towards: turned_back(axes, towards), color }
                 }
@@ -150,13 +156,9 @@ impl<'a> Lights<'a> {
                 }
                 Source::Point { .. } => continue,
             };
-            // There is room: `try_new` counted.
-            if let Some(place) = lighting.lights.get_mut(usize::from(lighting.count)) {
-                *place = light;
-                lighting.count += 1;
-            }
+            lighting.count += 1;
         }
-        lighting
+        are_gray
     }
 }
 
@@ -217,6 +219,10 @@ impl Local {
 }
 
 impl Lighting<'_> {
+    /// No light.
+    pub(crate) const DARK: Self =
+        Self { lights: [Local::NONE; MAX], count: 0, ambient: [0; 3], stretch: None };
+
     /// The light that arrives at a place that faces the direction of `normal`: ambient + Σ max(0, n·l) ·
     /// colour · attenuation, limited to 255.0; `two_sided`: |n·l|.
     ///
@@ -265,7 +271,7 @@ impl Lighting<'_> {
         sum.map(limited)
     }
 
-    /// [`Lighting::at`] a vertex, but for rounding. If all lights are [grey](Lights::brought) that may be said: it saves 20 cycles.
+    /// [`Lighting::at`] a vertex, but for rounding. If all lights are [grey](Lights::bring) that may be said: it saves 20 cycles.
     #[inline(always)]
     pub(crate) fn at_vertex(&self, vertex: &Vertex, [two_sided, is_gray]: [bool; 2], to: &mut [U8F8; 3]) {
         // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
