@@ -46,9 +46,9 @@ impl TriangleSetup {
             }
             let origin = attribute.origin();
             gradients.set_plane(&mut attribute.plane, origin, &rise.map(|rise| rise >> 8));
-            attribute.bend = [0; 3];
             true
         });
+        self.bends = [[0; 3]; 2];
         if are_set && let Some(uv) = &needs.code.uv {
             (uv.complete_held)(self, small, &scaling, is_level);
         }
@@ -72,7 +72,7 @@ impl TriangleSetup {
 
     /// Begins a triangle whose rows are held.
     fn hold(&mut self) {
-        self.longest = STRAIGHT;
+        self.longest = STRAIGHT as u8;
     }
 
     /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
@@ -97,13 +97,18 @@ impl TriangleSetup {
         self.is_bent = true;
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
-        while (self.longest * self.longest) * slopes_of_q[0].abs() > 3 << 13 {
-            self.longest >>= 1;
+        let mut longest = STRAIGHT;
+        while (longest * longest) * slopes_of_q[0].abs() > 3 << 13 {
+            longest >>= 1;
         }
+        self.longest = longest as u8;
         for i in 0..2 {
-            if !bend_attribute(&mut self.attributes[i], at(i), gradients, &bend, slopes_of_q) {
+            let Some(quadratic) =
+                bend_attribute(&mut self.attributes[i], at(i), gradients, &bend, slopes_of_q)
+            else {
                 return false;
-            }
+            };
+            self.bends[i] = quadratic;
         }
         self.keep_small_inside(needs);
         true
@@ -129,7 +134,8 @@ impl TriangleSetup {
             return (0, 0);
         };
         if self.is_held || self.is_bent && i < 2 {
-            return along_one(attribute, self.beyond_corner(place), steps);
+            let bend = self.bends.get(i).unwrap_or(&[0; 3]);
+            return along_one(attribute, bend, self.beyond_corner(place), steps);
         }
         let [x, y] = place;
         (attribute.plane.at(x, y) as i32, attribute.plane.steps[0])
@@ -140,7 +146,7 @@ impl TriangleSetup {
     pub(crate) fn along_bent(&self, place: [i32; 2], steps: i32) -> [(i32, i32); 2] {
         let [u, v, ..] = &self.attributes;
         let place = self.beyond_corner(place);
-        [along_held(u, place, steps), along_held(v, place, steps)]
+        [along_held(u, &self.bends[0], place, steps), along_held(v, &self.bends[1], place, steps)]
     }
 
     /// From corner 0's pixel to a pixel.
@@ -154,8 +160,8 @@ impl TriangleSetup {
 /// A held attribute m columns right and n rows below corner 0's pixel, I16F16, and its step along a row of at most `longest` steps, in
 /// neither of which it leaves the range.
 #[inline(always)]
-fn along_held(attribute: &Attribute, [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
-    let ([xx, xy, yy], Plane { origin, steps: [right, down] }) = (attribute.bend, attribute.plane);
+fn along_held(attribute: &Attribute, &[xx, xy, yy]: &[i32; 3], [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
+    let Plane { origin, steps: [right, down] } = attribute.plane;
     let right = right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(m));
     let down = down.wrapping_add(yy.wrapping_mul(n));
     let value = origin.wrapping_add_signed(right.wrapping_mul(m)).wrapping_add_signed(down.wrapping_mul(n));
@@ -164,11 +170,11 @@ fn along_held(attribute: &Attribute, [m, n]: [i32; 2], steps: i32) -> (i32, i32)
 
 /// Likewise: for where it is not asked as often.
 #[inline(never)]
-fn along_one(attribute: &Attribute, place: [i32; 2], steps: i32) -> (i32, i32) {
-    along_held(attribute, place, steps)
+fn along_one(attribute: &Attribute, bend: &[i32; 3], place: [i32; 2], steps: i32) -> (i32, i32) {
+    along_held(attribute, bend, place, steps)
 }
 
-/// Bends a texture coordinate whose plane is linear, from its values at the corners.
+/// Bends a texture coordinate whose plane is linear, from its values at the corners. Returns what is to be added x², xy and y² times.
 #[inline(never)]
 fn bend_attribute(
     attribute: &mut Attribute,
@@ -176,11 +182,11 @@ fn bend_attribute(
     gradients: &Gradients,
     bend: &Bend,
     [q_right, q_down]: [i32; 2],
-) -> bool {
+) -> Option<[i32; 3]> {
     let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
     let rise = attribute.set_range(at, 0);
     if attribute.range >= 1 << 26 {
-        return false;
+        return None;
     }
     // ∇u.
     let [right, down] = attribute.plane.steps;
@@ -209,6 +215,5 @@ fn bend_attribute(
     for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
         *step = step.wrapping_add(more);
     }
-    attribute.bend = [xx, xy, yy];
-    true
+    Some([xx, xy, yy])
 }
