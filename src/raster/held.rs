@@ -80,7 +80,9 @@ impl TriangleSetup {
     #[inline(never)]
     pub(super) fn bend(&mut self, small: &SmallTriangle<'_>, limit: u32) -> bool {
         let &SmallTriangle { vertices, needs, ref gradients, q, .. } = small;
-        let Some(bend) = Bend::new(&gradients.edges, q) else {
+        // By reference: it would be copied.
+        let bend = Bend::new(&gradients.edges, q);
+        let Some(bend) = &bend else {
             return false;
         };
         let at = |i: usize| vertices.map(|vertex| needs.scaled_uv(vertex, i));
@@ -104,7 +106,7 @@ impl TriangleSetup {
         self.longest = longest as u8;
         for i in 0..2 {
             let Some(quadratic) =
-                bend_attribute(&mut self.attributes[i], at(i), gradients, &bend, slopes_of_q)
+                bend_attribute(&mut self.attributes[i], at(i), gradients, bend, slopes_of_q)
             else {
                 return false;
             };
