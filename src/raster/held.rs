@@ -105,12 +105,17 @@ impl TriangleSetup {
         }
         self.longest = longest as u8;
         for i in 0..2 {
-            let Some(quadratic) =
-                bend_attribute(&mut self.attributes[i], at(i), gradients, bend, slopes_of_q)
-            else {
+            // One after another, so that what they take is not on the stack together.
+            let (attribute, quadratic) = (&mut self.attributes[i], &mut self.bends[i]);
+            let mut rise = attribute.set_range(at(i), 0);
+            if attribute.range >= 1 << 26 {
                 return false;
-            };
-            self.bends[i] = quadratic;
+            }
+            set_quadratic(quadratic, &attribute.plane.steps, slopes_of_q);
+            bend_rise(&mut rise, bend);
+            let origin = attribute.origin();
+            gradients.set_plane(&mut attribute.plane, origin, &rise);
+            bend_plane(&mut attribute.plane, quadratic, gradients);
         }
         self.keep_small_inside(needs);
         true
@@ -176,46 +181,40 @@ fn along_one(attribute: &Attribute, bend: &[i32; 3], place: [i32; 2], steps: i32
     along_held(attribute, bend, place, steps)
 }
 
-/// Bends a texture coordinate whose plane is linear, from its values at the corners. Returns what is to be added x², xy and y² times.
+/// The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid, from ∇u and ∇q/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at
+/// least 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
 #[inline(never)]
-fn bend_attribute(
-    attribute: &mut Attribute,
-    at: [i32; 3],
-    gradients: &Gradients,
-    bend: &Bend,
-    [q_right, q_down]: [i32; 2],
-) -> Option<[i32; 3]> {
-    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
-    let rise = attribute.set_range(at, 0);
-    if attribute.range >= 1 << 26 {
-        return None;
+fn set_quadratic(to: &mut [i32; 3], &[right, down]: &[i32; 2], [q_right, q_down]: [i32; 2]) {
+    *to = [
+        -mul_16_signed(right, q_right),
+        -mul_16_signed(right, q_down) - mul_16_signed(down, q_right),
+        -mul_16_signed(down, q_down),
+    ];
+}
+
+/// V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid), in units of 2⁸.
+#[inline(never)]
+fn bend_rise(rise: &mut [i32; 2], bend: &Bend) {
+    for (i, rise) in rise.iter_mut().enumerate() {
+        let rise_of_q = bend.rise(i);
+        let change = mul_16(*rise, rise_of_q.unsigned_abs());
+        *rise = (if rise_of_q < 0 { *rise - change } else { *rise + change }) >> 8;
     }
-    // ∇u.
-    let [right, down] = attribute.plane.steps;
-    // The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at least
-    // 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
-    let xx = -mul_16_signed(right, q_right);
-    let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
-    let yy = -mul_16_signed(down, q_down);
-    // V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid).
-    let origin = attribute.origin();
-    let rises = [0, 1].map(|i| {
-        let (rise, rise_of_q) = (rise[i], bend.rise(i));
-        let change = mul_16(rise, rise_of_q.unsigned_abs());
-        (if rise_of_q < 0 { rise - change } else { rise + change }) >> 8
-    });
-    gradients.set_plane(&mut attribute.plane, origin, &rises);
+}
+
+/// Bends the plane of a texture coordinate whose steps are V, from the coefficients of x², xy and y².
+#[inline(never)]
+fn bend_plane(plane: &mut Plane, &[xx, xy, yy]: &[i32; 3], gradients: &Gradients) {
+    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
     // The quadratic is evaluated by offsets (m, n) from the centre of corner 0's pixel, while p counts from corner 0:
     // it is (m + x/16, n + y/16). What is linear in m and n of that goes into the steps, and what is constant into
     // the origin. With x and y at most 8, sums are below 2³¹.
     let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
     // And the plane begins at that pixel.
-    attribute.plane.origin = attribute
-        .plane
+    plane.origin = plane
         .at(pixel_x, pixel_y)
         .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3);
-    for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
+    for (step, more) in plane.steps.iter_mut().zip(more) {
         *step = step.wrapping_add(more);
     }
-    Some([xx, xy, yy])
 }

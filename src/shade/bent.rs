@@ -75,7 +75,8 @@ impl Perspective<'_> {
             return Way::Straight;
         }
         let [to_near, to_far] = if self.setup.q_rises { [steps as i32, 0] } else { [0, steps as i32] };
-        let (mut place, mut weights) = self.place_in_sliver(x + to_near, y);
+        let (mut place, mut weights) = (Place { x, y, reciprocal: 0, zeros: 0 }, [0; 2]);
+        self.place_in_sliver(x + to_near, &mut place, &mut weights);
         let Some((way, _)) = self.start(&place, steps) else {
             return Way::None;
         };
@@ -84,7 +85,7 @@ impl Perspective<'_> {
             return way;
         }
         self.set_ends(&place, Some(&weights), true);
-        (place, weights) = self.place_in_sliver(x + to_far, y);
+        self.place_in_sliver(x + to_far, &mut place, &mut weights);
         self.set_ends(&place, Some(&weights), false);
         self.set_by_ends(steps, &way);
         way
@@ -103,11 +104,12 @@ impl Perspective<'_> {
         }
     }
 
-    /// A pixel of a sliver and 1/q there, and by how much corners 1 and 2 count.
-    fn place_in_sliver(&mut self, x: i32, y: i32) -> (Place, [u32; 2]) {
-        let weights = self.setup.weights(x, y);
-        let (m, zeros) = self.mantissa_of(self.setup.q().weighted(&weights));
-        (Place { x, y, reciprocal: looked_up(m), zeros }, weights)
+    /// Goes to another pixel of the same row of a sliver: 1/q there, and by how much corners 1 and 2 count.
+    #[inline(never)]
+    fn place_in_sliver(&mut self, x: i32, place: &mut Place, weights: &mut [u32; 2]) {
+        *weights = self.setup.weights(x, place.y);
+        let (m, zeros) = self.mantissa_of(self.setup.q().weighted(weights));
+        *place = Place { x, y: place.y, reciprocal: looked_up(m), zeros };
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
