@@ -10,26 +10,28 @@ use crate::num::{mul_17, mul_high, wide};
 use core::hint::black_box;
 
 /// (u − u₀)·q, and the way back to u.
+///
+/// The fields are in the order in which Armv6-M reaches those of u and of v with one register.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(C)]
 pub(crate) struct Attribute {
     /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a sliver in `Exact` u − u₀ in I16F16, and of a straight
     /// triangle u − `least`.
     pub(crate) plane: Plane,
-    /// What perspective takes. Of a small triangle that is drawn at one go: what is to be added x², xy and y² times,
-    /// x and y being the way from corner 0's pixel. Of any other that is bent: how much more than the least u would
-    /// be along a row where q is infinite, in 2^k of I16F16; k; and what straight lines keep from the ends of the
-    /// range.
-    pub(crate) bend: [i32; 3],
-    /// 1 … 31.
-    pub(crate) shift: i32,
     /// What u may be, I16F16: the least, how much more than u₀ that is, and how much more than the least there may be. It is the
     /// range at the corners, or of a texture coordinate a little less.
     pub(crate) least: i32,
     pub(crate) low: i32,
     pub(crate) range: u32,
-    /// What comes out is times 2^this, modulo 2³².
-    pub(crate) scale_log2: u32,
+    /// Of a bent triangle that is not small: how much more than the least u would be along a row where q is infinite, in 2^k of I16F16.
+    horizon: i32,
+    /// 1 … 31.
+    pub(super) shift: u16,
+    /// In the lower half [`Attribute::scale_log2`], in the upper one k.
+    scales: u16,
 }
+
+const _: () = assert!(size_of::<Attribute>() == 32);
 
 /// A pixel of a triangle that is no sliver, and 1/q there.
 #[derive(Clone, Copy)]
@@ -56,7 +58,7 @@ impl Attribute {
         self.least = at[0].wrapping_add(low);
         self.low = low;
         self.range = high.wrapping_sub(low) as u32;
-        self.scale_log2 = scale_log2;
+        self.set_scale_log2(scale_log2);
         rise
     }
 
@@ -117,7 +119,8 @@ impl Attribute {
     /// The middle of the range: one that is the same at all corners stays what it is. If it may be packed, which takes an inset of more
     /// than 2, it is in the middle of its texel.
     fn amid(&self, inset: u32) -> i32 {
-        let (texel, middle) = (0x10000 >> self.scale_log2, self.least.wrapping_add_unsigned(self.range >> 1));
+        let (texel, middle) =
+            (0x10000 >> self.scale_log2(), self.least.wrapping_add_unsigned(self.range >> 1));
         if inset > 2 { (middle & -texel) + texel / 2 } else { middle }
     }
 
@@ -143,7 +146,7 @@ impl Attribute {
         // Values at corners are within ±(2³⁰ − 2¹⁵), those between too but for rounding: less than 2¹¹ units, see
         // [set-up](super::setup).
         let product = mul_high(value, reciprocal);
-        let down = self.shift - 2 - zeros as i32;
+        let down = self.shift() - 2 - zeros as i32;
         self.bounded(if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) })
     }
 
@@ -152,31 +155,50 @@ impl Attribute {
     #[inline]
     pub(crate) fn above(&self, value: i32, reciprocal: u32, zeros: u32) -> u32 {
         let product = mul_17(value, reciprocal);
-        let down = self.shift - zeros as i32;
+        let down = self.shift() - zeros as i32;
         let offset = if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) };
         offset.wrapping_sub(self.low) as u32
     }
 
+    /// What comes out is times 2^this, modulo 2³².
+    #[inline(always)]
+    pub(crate) fn scale_log2(&self) -> u32 {
+        u32::from(self.scales) & 31
+    }
+
+    #[inline(always)]
+    pub(super) fn set_scale_log2(&mut self, log2: u32) {
+        self.scales = log2 as u16;
+    }
+
+    /// 1 … 31.
+    #[inline(always)]
+    pub(crate) fn shift(&self) -> i32 {
+        self.shift.into()
+    }
+
     /// Sets the horizon, from the normalised step of q along a row, its leading zeros and its reciprocal in 31 bits.
     #[inline]
-    pub(super) fn set_horizon(&mut self, rises: bool, zeros: u32, reciprocal: i32, inset: u32) {
+    pub(super) fn set_horizon(&mut self, rises: bool, zeros: u32, reciprocal: i32) {
         let quotient = (wide(self.plane.steps[0], reciprocal) >> 32) as i32;
         let quotient = if rises { quotient } else { -quotient };
         // By how much the quotient is to be shifted left.
-        let up = zeros as i32 + 2 - self.shift;
-        self.bend = if (1..29).contains(&up) && quotient.unsigned_abs() >> (29 - up) == 0 {
-            [(quotient << up).wrapping_sub(self.low), 0, inset as i32]
+        let up = zeros as i32 + 2 - self.shift();
+        let (horizon, log2) = if (1..29).contains(&up) && quotient.unsigned_abs() >> (29 - up) == 0 {
+            ((quotient << up).wrapping_sub(self.low), 0)
         } else if up > 0 {
-            [quotient.wrapping_sub(self.low >> up.min(31)), up, inset as i32]
+            (quotient.wrapping_sub(self.low >> up.min(31)), up as u16)
         } else {
-            [(quotient >> (-up).min(31)).wrapping_sub(self.low), 0, inset as i32]
+            ((quotient >> (-up).min(31)).wrapping_sub(self.low), 0)
         };
+        self.horizon = horizon;
+        self.scales = self.scales & 31 | log2 << 8;
     }
 
     /// How much more than the least it is at the horizon, in 2^k of I16F16, and k.
     #[inline]
     pub(crate) fn horizon(&self) -> (i32, u32) {
-        (self.bend[0], self.bend[1] as u32)
+        (self.horizon, (self.scales >> 8).into())
     }
 
     #[cold]
@@ -215,17 +237,16 @@ impl Attribute {
         self.along_border(first as i32, last as i32, steps)
     }
 
-    /// Likewise, of a bent triangle: inside the range by as much as carries may move it, if it is packed.
+    /// Likewise, an `inset` inside the range.
     #[inline]
-    pub(crate) fn along_inside(&self, (value, step): (u32, i32), steps: i32) -> (i32, i32) {
+    pub(crate) fn along_inside(&self, (value, step): (u32, i32), steps: i32, inset: u32) -> (i32, i32) {
         let (first, last) = (value, value.wrapping_add_signed(step.wrapping_mul(steps)));
-        let [.., inset] = self.bend;
-        let [first_inside, last_inside] = [first, last].map(|above| above.wrapping_sub(inset as u32));
-        let range = self.range as i32 - 2 * inset;
+        let [first_inside, last_inside] = [first, last].map(|above| above.wrapping_sub(inset));
+        let range = self.range as i32 - 2 * inset as i32;
         if range >= 0 && first_inside <= range as u32 && last_inside <= range as u32 {
             return (self.least.wrapping_add_unsigned(first), step);
         }
-        self.along_border_inside(first as i32, last as i32, steps)
+        self.along_border_inside([first as i32, last as i32], steps, inset)
     }
 
     #[cold]
@@ -236,8 +257,7 @@ impl Attribute {
 
     #[cold]
     #[inline(never)]
-    fn along_border_inside(&self, first: i32, last: i32, steps: i32) -> (i32, i32) {
-        let inset = self.bend[2] as u32;
+    fn along_border_inside(&self, [first, last]: [i32; 2], steps: i32, inset: u32) -> (i32, i32) {
         let (least, range) = if self.range < 2 * inset {
             (self.amid(inset), 0)
         } else {

@@ -46,9 +46,9 @@ impl TriangleSetup {
             }
             let origin = attribute.origin();
             gradients.set_plane(&mut attribute.plane, origin, &rise.map(|rise| rise >> 8));
-            attribute.bend = [0; 3];
             true
         });
+        self.bends = [[0; 3]; 2];
         if are_set && let Some(uv) = &needs.code.uv {
             (uv.complete_held)(self, small, &scaling, is_level);
         }
@@ -72,7 +72,7 @@ impl TriangleSetup {
 
     /// Begins a triangle whose rows are held.
     fn hold(&mut self) {
-        self.longest = STRAIGHT;
+        self.longest = STRAIGHT as u8;
     }
 
     /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
@@ -80,7 +80,9 @@ impl TriangleSetup {
     #[inline(never)]
     pub(super) fn bend(&mut self, small: &SmallTriangle<'_>, limit: u32) -> bool {
         let &SmallTriangle { vertices, needs, ref gradients, q, .. } = small;
-        let Some(bend) = Bend::new(&gradients.edges, q) else {
+        // By reference: it would be copied.
+        let bend = Bend::new(&gradients.edges, q);
+        let Some(bend) = &bend else {
             return false;
         };
         let at = |i: usize| vertices.map(|vertex| needs.scaled_uv(vertex, i));
@@ -97,13 +99,23 @@ impl TriangleSetup {
         self.is_bent = true;
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
-        while (self.longest * self.longest) * slopes_of_q[0].abs() > 3 << 13 {
-            self.longest >>= 1;
+        let mut longest = STRAIGHT;
+        while (longest * longest) * slopes_of_q[0].abs() > 3 << 13 {
+            longest >>= 1;
         }
+        self.longest = longest as u8;
         for i in 0..2 {
-            if !bend_attribute(&mut self.attributes[i], at(i), gradients, &bend, slopes_of_q) {
+            // One after another, so that what they take is not on the stack together.
+            let (attribute, quadratic) = (&mut self.attributes[i], &mut self.bends[i]);
+            let mut rise = attribute.set_range(at(i), 0);
+            if attribute.range >= 1 << 26 {
                 return false;
             }
+            set_quadratic(quadratic, &attribute.plane.steps, slopes_of_q);
+            bend_rise(&mut rise, bend);
+            let origin = attribute.origin();
+            gradients.set_plane(&mut attribute.plane, origin, &rise);
+            bend_plane(&mut attribute.plane, quadratic, gradients);
         }
         self.keep_small_inside(needs);
         true
@@ -129,7 +141,8 @@ impl TriangleSetup {
             return (0, 0);
         };
         if self.is_held || self.is_bent && i < 2 {
-            return along_one(attribute, self.beyond_corner(place), steps);
+            let bend = self.bends.get(i).unwrap_or(&[0; 3]);
+            return along_one(attribute, bend, self.beyond_corner(place), steps);
         }
         let [x, y] = place;
         (attribute.plane.at(x, y) as i32, attribute.plane.steps[0])
@@ -140,7 +153,7 @@ impl TriangleSetup {
     pub(crate) fn along_bent(&self, place: [i32; 2], steps: i32) -> [(i32, i32); 2] {
         let [u, v, ..] = &self.attributes;
         let place = self.beyond_corner(place);
-        [along_held(u, place, steps), along_held(v, place, steps)]
+        [along_held(u, &self.bends[0], place, steps), along_held(v, &self.bends[1], place, steps)]
     }
 
     /// From corner 0's pixel to a pixel.
@@ -154,8 +167,8 @@ impl TriangleSetup {
 /// A held attribute m columns right and n rows below corner 0's pixel, I16F16, and its step along a row of at most `longest` steps, in
 /// neither of which it leaves the range.
 #[inline(always)]
-fn along_held(attribute: &Attribute, [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
-    let ([xx, xy, yy], Plane { origin, steps: [right, down] }) = (attribute.bend, attribute.plane);
+fn along_held(attribute: &Attribute, &[xx, xy, yy]: &[i32; 3], [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
+    let Plane { origin, steps: [right, down] } = attribute.plane;
     let right = right.wrapping_add(xy.wrapping_mul(n)).wrapping_add(xx.wrapping_mul(m));
     let down = down.wrapping_add(yy.wrapping_mul(n));
     let value = origin.wrapping_add_signed(right.wrapping_mul(m)).wrapping_add_signed(down.wrapping_mul(n));
@@ -164,51 +177,44 @@ fn along_held(attribute: &Attribute, [m, n]: [i32; 2], steps: i32) -> (i32, i32)
 
 /// Likewise: for where it is not asked as often.
 #[inline(never)]
-fn along_one(attribute: &Attribute, place: [i32; 2], steps: i32) -> (i32, i32) {
-    along_held(attribute, place, steps)
+fn along_one(attribute: &Attribute, bend: &[i32; 3], place: [i32; 2], steps: i32) -> (i32, i32) {
+    along_held(attribute, bend, place, steps)
 }
 
-/// Bends a texture coordinate whose plane is linear, from its values at the corners.
+/// The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid, from ∇u and ∇q/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at
+/// least 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
 #[inline(never)]
-fn bend_attribute(
-    attribute: &mut Attribute,
-    at: [i32; 3],
-    gradients: &Gradients,
-    bend: &Bend,
-    [q_right, q_down]: [i32; 2],
-) -> bool {
-    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
-    let rise = attribute.set_range(at, 0);
-    if attribute.range >= 1 << 26 {
-        return false;
+fn set_quadratic(to: &mut [i32; 3], &[right, down]: &[i32; 2], [q_right, q_down]: [i32; 2]) {
+    *to = [
+        -mul_16_signed(right, q_right),
+        -mul_16_signed(right, q_down) - mul_16_signed(down, q_right),
+        -mul_16_signed(down, q_down),
+    ];
+}
+
+/// V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid), in units of 2⁸.
+#[inline(never)]
+fn bend_rise(rise: &mut [i32; 2], bend: &Bend) {
+    for (i, rise) in rise.iter_mut().enumerate() {
+        let rise_of_q = bend.rise(i);
+        let change = mul_16(*rise, rise_of_q.unsigned_abs());
+        *rise = (if rise_of_q < 0 { *rise - change } else { *rise + change }) >> 8;
     }
-    // ∇u.
-    let [right, down] = attribute.plane.steps;
-    // The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at least
-    // 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
-    let xx = -mul_16_signed(right, q_right);
-    let xy = -mul_16_signed(right, q_down) - mul_16_signed(down, q_right);
-    let yy = -mul_16_signed(down, q_down);
-    // V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid).
-    let origin = attribute.origin();
-    let rises = [0, 1].map(|i| {
-        let (rise, rise_of_q) = (rise[i], bend.rise(i));
-        let change = mul_16(rise, rise_of_q.unsigned_abs());
-        (if rise_of_q < 0 { rise - change } else { rise + change }) >> 8
-    });
-    gradients.set_plane(&mut attribute.plane, origin, &rises);
+}
+
+/// Bends the plane of a texture coordinate whose steps are V, from the coefficients of x², xy and y².
+#[inline(never)]
+fn bend_plane(plane: &mut Plane, &[xx, xy, yy]: &[i32; 3], gradients: &Gradients) {
+    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
     // The quadratic is evaluated by offsets (m, n) from the centre of corner 0's pixel, while p counts from corner 0:
     // it is (m + x/16, n + y/16). What is linear in m and n of that goes into the steps, and what is constant into
     // the origin. With x and y at most 8, sums are below 2³¹.
     let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
     // And the plane begins at that pixel.
-    attribute.plane.origin = attribute
-        .plane
+    plane.origin = plane
         .at(pixel_x, pixel_y)
         .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3);
-    for (step, more) in attribute.plane.steps.iter_mut().zip(more) {
+    for (step, more) in plane.steps.iter_mut().zip(more) {
         *step = step.wrapping_add(more);
     }
-    attribute.bend = [xx, xy, yy];
-    true
 }

@@ -51,6 +51,7 @@
 
 use super::attribute::Attribute;
 use super::needs::Needs;
+use super::plane::Plane;
 use super::scaling::Scaling;
 use super::slopes::Slopes;
 use super::straight::{Bend, Straight};
@@ -79,10 +80,11 @@ impl TriangleSetup {
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));
         let up = normalise(q[0]).1 - 1;
         let q = q.map(|near_w| near_w << up);
-        self.q_min = q[1].min(q[2]);
+        let q_min = q[1].min(q[2]);
+        self.bends[1][1] = q_min as i32;
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
         let is_perspective = matches!(needs.straight, Straight::Below(_));
-        slopes.sliver |= needs.every_pixel && self.q_min < 1 << 19 && is_perspective;
+        slopes.sliver |= needs.every_pixel && q_min < 1 << 19 && is_perspective;
         self.sliver = slopes.sliver;
         if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
@@ -101,7 +103,7 @@ impl TriangleSetup {
         if needs.reads_color() {
             self.set_gray(vertices, needs.gray);
         }
-        let is_exact = needs.is_exactly_straight(self.q_min, q[0]);
+        let is_exact = needs.is_exactly_straight(q_min, q[0]);
         self.straight = match needs.straight {
             Straight::Below(limit) if !is_exact => self.is_straight(&q, limit.get()),
             _ => true,
@@ -109,7 +111,12 @@ impl TriangleSetup {
         let reciprocal = if self.straight {
             0
         } else {
-            slopes.set_plane_of(&mut self.q, q);
+            let mut plane = Plane::default();
+            slopes.set_plane_of(&mut plane, q);
+            self.bends[0] = [plane.origin as i32, plane.steps[0], plane.steps[1]];
+            // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
+            let inset = i32::from(scaling.packing(1).inset);
+            self.bends[1][2] = if inset > 1 { 2 * inset } else { 0 };
             self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
             self.set_q_step(needs.every_pixel)
         };
@@ -127,10 +134,7 @@ impl TriangleSetup {
             };
             slopes.set_plane(&mut attribute.plane, rise);
             if !self.straight && !(self.sliver && needs.every_pixel) {
-                // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
-                let inset = u32::from(scaling.packing(1).inset);
-                let inset = if i == 1 && inset > 1 { 2 * inset } else { 0 };
-                attribute.set_horizon(self.q_rises, self.q_step_zeros, reciprocal, inset);
+                attribute.set_horizon(self.q_rises, self.q_step_zeros.into(), reciprocal);
             }
             true
         });
@@ -150,13 +154,14 @@ impl TriangleSetup {
     /// What a row needs for perspective, besides planes and horizons: the step of q along it, normalised. Returns its reciprocal.
     #[inline]
     fn set_q_step(&mut self, every_pixel: bool) -> i32 {
-        let step = self.step(&self.q);
+        let step = self.step(&self.q());
         let size = step.unsigned_abs();
         // Below 2¹² q changes by 2⁻⁸ of itself over 1023 pixels, if it is 2³⁰.
         self.is_level = !self.sliver && size < if every_pixel { 1 } else { 1 << 12 };
-        (self.q_step, self.q_step_zeros) = normalise(size.max(1));
+        let (mantissa, zeros) = normalise(size.max(1));
+        (self.bends[1][0], self.q_step_zeros) = (mantissa as i32, zeros as u8);
         self.q_rises = step > 0;
-        Reciprocal::precise_normalised(self.q_step, self.q_step_zeros).mantissa
+        Reciprocal::precise_normalised(mantissa, zeros).mantissa
     }
 
     /// Whether the plane of U may be off by more than 2⁻¹⁷ of its attribute's range: by (n + m)/2 + 16 units of 2⁻²⁹
@@ -164,7 +169,7 @@ impl TriangleSetup {
     #[inline]
     fn planes_leave_range(&self, greatest: u32, size: u32) -> bool {
         let units = size / 4 + 16;
-        (units * (greatest >> 16)) >> 12 >= self.q_min >> 16
+        (units * (greatest >> 16)) >> 12 >= self.q_min() >> 16
     }
 
     /// Sets an attribute of a bent triangle, whose range is set, but for its plane and its horizon. Takes how much it rises from corner 0
@@ -184,7 +189,7 @@ impl TriangleSetup {
         let largest = products[0].unsigned_abs() | products[1].unsigned_abs();
         // 30 bits of the larger, and not quite 2³⁰.
         let (_, zeros) = normalise(((largest + (largest >> 15)) >> 30) as u32 | 1);
-        attribute.shift = zeros as i32;
+        attribute.shift = zeros as u16;
         *rise = products.map(|product| shift_round_short(product, 32 - zeros));
     }
 }

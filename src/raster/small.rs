@@ -139,7 +139,7 @@ impl TriangleSetup {
                 return false;
             }
             // For what asks where a texture is seen.
-            attribute.scale_log2 = 0;
+            attribute.set_scale_log2(0);
             attribute.least = a.wrapping_add(least << 8);
             attribute.range = ((range << 8) as u32).saturating_sub(1);
         }

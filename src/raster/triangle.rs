@@ -15,11 +15,20 @@ pub(crate) const ATTRIBUTES: usize = 5;
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
 pub(crate) struct TriangleSetup {
-    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
-    /// triangle the uppermost.
-    pub(crate) corners: [[i32; 2]; 3],
-    /// 1 / (twice the area in 1/256 px²); not of small triangles.
-    pub(super) area: Reciprocal,
+    /// near/w with 31 fraction bits; for depth.
+    pub(crate) z: Plane,
+    /// What perspective takes. Of a small triangle that is held: of u and v what is to be added x², xy and y² times, x and y being the way
+    /// from corner 0's pixel. Of any other that is bent: near/w scaled to 31 bits, as a plane; the size of its step along a row with the
+    /// first bit set; the least that it is at a corner; and what straight lines of v keep from the ends of its range.
+    pub(super) bends: [[i32; 3]; 2],
+    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear.
+    pub(crate) longest: u8,
+    /// Of a bent one: how far the step of q was shifted, and whether q rises.
+    pub(super) q_step_zeros: u8,
+    pub(crate) q_rises: bool,
+    /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
+    /// step is below 2¹².
+    pub(crate) is_level: bool,
     /// Whether all colours at the corners are greys, so that one channel stands for three.
     pub(crate) gray: bool,
     /// Whether planes hold values at corners: a sliver, or of very different distances.
@@ -37,26 +46,15 @@ pub(crate) struct TriangleSetup {
     pub(crate) leans: bool,
     /// Of a bent one: whether its planes may leave the range of the corners by more than [`TriangleSetup::contract`] allows for.
     pub(crate) is_extreme: bool,
-    /// near/w with 31 fraction bits; for depth.
-    pub(crate) z: Plane,
-    /// near/w scaled to 31 bits; for the division. Not of straight triangles.
-    pub(crate) q: Plane,
-    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear.
-    pub(crate) longest: i32,
-    /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
-    /// step is below 2¹².
-    pub(crate) is_level: bool,
-    /// Of a bent one: the step of q along a row, its size with the first bit set; how far it was
-    /// shifted for that; and whether q rises.
-    pub(crate) q_step: u32,
-    pub(crate) q_step_zeros: u32,
-    pub(crate) q_rises: bool,
-    /// The least q of the corners.
-    pub(crate) q_min: u32,
     pub(crate) attributes: [Attribute; ATTRIBUTES],
+    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
+    /// triangle the uppermost.
+    pub(crate) corners: [[i32; 2]; 3],
+    /// 1 / (twice the area in 1/256 px²); not of small triangles.
+    pub(super) area: Reciprocal,
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 316);
+const _: () = assert!(size_of::<TriangleSetup>() <= 240);
 
 impl TriangleSetup {
     /// Of no triangle. (One is used for all triangles of a draw: setting it to zero takes 240 cycles.)
@@ -73,13 +71,11 @@ impl TriangleSetup {
             leans: false,
             is_extreme: false,
             z: Plane::default(),
-            q: Plane::default(),
+            bends: [[0; 3]; 2],
             longest: 0,
             is_level: false,
-            q_step: 0,
             q_step_zeros: 0,
             q_rises: false,
-            q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
     }
@@ -88,6 +84,31 @@ impl TriangleSetup {
     #[inline]
     pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], is_known: bool) {
         self.gray = is_known || vertices.iter().all(|vertex| is_gray(vertex.color));
+    }
+
+    /// near/w scaled to 31 bits; for the division. Of a bent triangle that is not small.
+    #[inline(always)]
+    pub(crate) fn q(&self) -> Plane {
+        let [origin, right, down] = self.bends[0];
+        Plane { origin: origin as u32, steps: [right, down] }
+    }
+
+    /// Of the same: the step of q along a row, its size with the first bit set, and how far it was shifted for that.
+    #[inline(always)]
+    pub(crate) fn q_step(&self) -> (u32, u32) {
+        (self.bends[1][0] as u32, self.q_step_zeros.into())
+    }
+
+    /// The least q of the corners.
+    #[inline(always)]
+    pub(super) fn q_min(&self) -> u32 {
+        self.bends[1][1] as u32
+    }
+
+    /// What straight lines of attribute `i` keep from the ends of its range.
+    #[inline(always)]
+    pub(crate) fn inset(&self, i: usize) -> u32 {
+        if i == 1 { self.bends[1][2] as u32 } else { 0 }
     }
 
     /// Whether it is small and may be drawn at one go.
@@ -109,7 +130,7 @@ impl TriangleSetup {
     pub(crate) fn uv_are_inside(&self, log2: [u32; 2]) -> bool {
         self.attributes.iter().zip(log2).all(|(attribute, log2)| {
             let last = attribute.least.checked_add_unsigned(attribute.range);
-            attribute.scale_log2 == 0
+            attribute.scale_log2() == 0
                 && attribute.least >= 0
                 && last.is_some_and(|last| (last >> 16) < 1 << log2)
         })
@@ -148,7 +169,8 @@ impl TriangleSetup {
     #[cold]
     #[inline(never)]
     fn bounded_q(&self, q: u32) -> u32 {
-        if q.wrapping_sub(self.q_min) > 3 << 30 { self.q_min } else { q.min(i32::MAX as u32) }
+        let least = self.q_min();
+        if q.wrapping_sub(least) > 3 << 30 { least } else { q.min(i32::MAX as u32) }
     }
 
     /// By how much corners 1 and 2 count at a pixel of a sliver, 31 fraction bits: exact edge functions times 1/area.
@@ -203,9 +225,10 @@ impl TriangleSetup {
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         let (b, c) = ((ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px);
         let a = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) - b - c;
-        let q = |rise: i32| self.q.origin.wrapping_add_signed(rise) as i32;
+        let plane = self.q();
+        let q = |rise: i32| plane.origin.wrapping_add_signed(rise) as i32;
         // Together at most area · 2³¹.
-        let (b, c) = (wide(b, q(self.q.steps[0])), wide(c, q(self.q.steps[1])));
+        let (b, c) = (wide(b, q(plane.steps[0])), wide(c, q(plane.steps[1])));
         let sum = (wide(a, q(0)) + b + c).max(1);
         // Their upper 31 bits.
         let excess = 33 - sum.leading_zeros() as i32;
@@ -233,7 +256,7 @@ mod tests {
     #[test]
     fn q_that_rounding_took_out_of_its_range_is_brought_back() {
         let (least, most) = (5, i32::MAX as u32);
-        let setup = TriangleSetup { q_min: least, ..TriangleSetup::new() };
+        let setup = TriangleSetup { bends: [[0; 3], [0, least as i32, 0]], ..TriangleSetup::new() };
         let met =
             [(0, least), (u32::MAX, least), (u32::MAX - 2000, least), (1 << 31, most), (most + 2000, most)];
         let inside = [least, 6, 1 << 20, most].map(|q| (q, q));

@@ -75,7 +75,8 @@ impl Perspective<'_> {
             return Way::Straight;
         }
         let [to_near, to_far] = if self.setup.q_rises { [steps as i32, 0] } else { [0, steps as i32] };
-        let (mut place, mut weights) = self.place_in_sliver(x + to_near, y);
+        let (mut place, mut weights) = (Place { x, y, reciprocal: 0, zeros: 0 }, [0; 2]);
+        self.place_in_sliver(x + to_near, &mut place, &mut weights);
         let Some((way, _)) = self.start(&place, steps) else {
             return Way::None;
         };
@@ -84,7 +85,7 @@ impl Perspective<'_> {
             return way;
         }
         self.set_ends(&place, Some(&weights), true);
-        (place, weights) = self.place_in_sliver(x + to_far, y);
+        self.place_in_sliver(x + to_far, &mut place, &mut weights);
         self.set_ends(&place, Some(&weights), false);
         self.set_by_ends(steps, &way);
         way
@@ -103,11 +104,12 @@ impl Perspective<'_> {
         }
     }
 
-    /// A pixel of a sliver and 1/q there, and by how much corners 1 and 2 count.
-    fn place_in_sliver(&mut self, x: i32, y: i32) -> (Place, [u32; 2]) {
-        let weights = self.setup.weights(x, y);
-        let (m, zeros) = self.mantissa_of(self.setup.q.weighted(&weights));
-        (Place { x, y, reciprocal: looked_up(m), zeros }, weights)
+    /// Goes to another pixel of the same row of a sliver: 1/q there, and by how much corners 1 and 2 count.
+    #[inline(never)]
+    fn place_in_sliver(&mut self, x: i32, place: &mut Place, weights: &mut [u32; 2]) {
+        *weights = self.setup.weights(x, place.y);
+        let (m, zeros) = self.mantissa_of(self.setup.q().weighted(weights));
+        *place = Place { x, y: place.y, reciprocal: looked_up(m), zeros };
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
@@ -118,8 +120,9 @@ impl Perspective<'_> {
             return Some((Way::Straight, (0, 0)));
         }
         let (setup, rises) = (self.setup, self.setup.q_rises);
-        let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
-        let down = setup.q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3) as i32;
+        let (q_step, q_step_zeros) = setup.q_step();
+        let size = mul_high((q_step >> 1) as i32, near.reciprocal) as u32;
+        let down = q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3) as i32;
         if down < -3 || down == -3 && size > 7 << 26 {
             return None;
         }
@@ -153,7 +156,7 @@ impl Perspective<'_> {
     #[inline]
     fn set_pixel_of(&mut self, i: usize, attribute: &Attribute, above: i32) {
         let u = attribute.least.wrapping_add(above);
-        self.set_line(i, Linear { at: (u << attribute.scale_log2) as u32, slope: 0 });
+        self.set_line(i, Linear { at: (u << attribute.scale_log2()) as u32, slope: 0 });
     }
 
     /// The forms that take the change over a pixel: all but the table's.
@@ -173,7 +176,7 @@ impl Perspective<'_> {
                     let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
                     self.set_line(i, Linear { at: (u << up) as u32, slope });
                 }
-                _ => self.set_general(i, u, attribute.scale_log2, slope, log2),
+                _ => self.set_general(i, u, attribute.scale_log2(), slope, log2),
             }
         }
     }
@@ -192,10 +195,10 @@ impl Perspective<'_> {
         let steps = steps as i32;
         let far = above.wrapping_add(slope.wrapping_mul(steps));
         let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
-        let (at, step) = attribute.along_inside((first as u32, step), steps);
+        let (at, step) = attribute.along_inside((first as u32, step), steps, self.setup.inset(i));
         self.set_line(
             i,
-            Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 },
+            Linear { at: (at << attribute.scale_log2()) as u32, slope: step << attribute.scale_log2() },
         );
     }
 
@@ -276,7 +279,7 @@ impl Perspective<'_> {
                 Way::Straight => self.set_straight(i, attribute, above, rises, scaled(quotient, log2), steps),
                 _ if self.units.form != Form::Modular => {
                     let log2 = log2 + fraction_bits(self.units.form) as i32;
-                    self.set_general(i, u, attribute.scale_log2, quotient, log2);
+                    self.set_general(i, u, attribute.scale_log2(), quotient, log2);
                 }
                 _ => {
                     let up = self.units.up(i);

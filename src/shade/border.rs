@@ -111,7 +111,7 @@ impl Border for Mirror {
 pub(super) fn uv_bits(setup: &TriangleSetup) -> [u32; 2] {
     let [u, v, ..] = &setup.attributes;
     [u, v].map(|attribute| match attribute.least.checked_add_unsigned(attribute.range) {
-        Some(most) if attribute.scale_log2 == 0 => {
+        Some(most) if attribute.scale_log2() == 0 => {
             let farthest = (most >> 16).saturating_add(1).max(1 - (attribute.least >> 16));
             33 - farthest.leading_zeros()
         }

@@ -112,7 +112,7 @@ impl<'a> Perspective<'a> {
     /// q's mantissa at a pixel, 2³¹ … 2³² − 1, and its leading zeros. Not of a sliver.
     #[inline(always)]
     pub(super) fn q_at(&mut self, x: i32, y: i32) -> (u32, u32) {
-        self.mantissa_of(self.setup.q.at(x, y))
+        self.mantissa_of(self.setup.q().at(x, y))
     }
 
     /// A pixel and 1/q there. Not of a sliver.
@@ -210,7 +210,7 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn level(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let (m, zeros) = self.q_at(x, y);
-        let q_step = self.setup.q.steps[0];
+        let q_step = self.setup.q().steps[0];
         let mut bends = false;
         if q_step != 0 {
             // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
@@ -233,12 +233,12 @@ impl<'a> Perspective<'a> {
             return Way::Straight;
         }
         let (attributes, lines) = (&self.setup.attributes, &mut self.curve.lines);
-        level(&attributes[0], &place, 0, steps, false, &mut lines[0]);
+        level(&attributes[0], &place, 0, steps, None, &mut lines[0]);
         if count > 1 {
-            level(&attributes[1], &place, 0, steps, true, &mut lines[1]);
+            level(&attributes[1], &place, 0, steps, Some(self.setup.inset(1)), &mut lines[1]);
         }
         for i in 2..count.min(ATTRIBUTES) {
-            level_further(&attributes[i], &place, 0, steps, false, &mut lines[i]);
+            level_further(&attributes[i], &place, 0, steps, None, &mut lines[i]);
         }
         Way::Straight
     }
@@ -249,7 +249,7 @@ impl<'a> Perspective<'a> {
     fn level_bending(&mut self, place: &Place, q_step: i32, steps: u32) {
         let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
         for (i, (attribute, line)) in all.enumerate().take(self.units.count()) {
-            level_further(attribute, place, q_step, steps, i == 1, line);
+            level_further(attribute, place, q_step, steps, (i == 1).then(|| self.setup.inset(1)), line);
         }
     }
 
@@ -258,8 +258,9 @@ impl<'a> Perspective<'a> {
     fn near_horizon(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let setup = self.setup;
         let near = self.near(x, y, steps);
-        let size = mul_high((setup.q_step >> 1) as i32, near.reciprocal) as u32;
-        let down = setup.q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3);
+        let (q_step, q_step_zeros) = setup.q_step();
+        let size = mul_high((q_step >> 1) as i32, near.reciprocal) as u32;
+        let down = q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3);
         // What does not fit is for `bent`.
         let w_step = if down < 32 { size >> down } else { 0 };
         // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
@@ -286,7 +287,7 @@ impl<'a> Perspective<'a> {
     #[inline(never)]
     fn small(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let (setup, steps) = (self.setup, steps as i32);
-        if (setup.is_held || setup.is_bent) && steps > setup.longest {
+        if (setup.is_held || setup.is_bent) && steps > i32::from(setup.longest) {
             return Way::None;
         }
         for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count()) {
@@ -308,16 +309,24 @@ impl<'a> Perspective<'a> {
                 return Way::None;
             }
             let (at, step) = attribute.along(plane, steps as i32);
-            *line = Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+            *line =
+                Linear { at: (at << attribute.scale_log2()) as u32, slope: step << attribute.scale_log2() };
             black_box(());
         }
         Way::Straight
     }
 }
 
-/// An attribute's straight line where q is the same all along, or with its step where it nearly is; v keeps from its ends.
+/// An attribute's straight line where q is the same all along, or with its step where it nearly is; v keeps an inset from its ends.
 #[inline(always)]
-fn level(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, is_v: bool, line: &mut Linear) {
+fn level(
+    attribute: &Attribute,
+    place: &Place,
+    q_step: i32,
+    steps: u32,
+    inset: Option<u32>,
+    line: &mut Linear,
+) {
     let plane = &attribute.plane;
     // 17 bits of 1/q do: the ends are held in the range.
     let reciprocal = (place.reciprocal + (1 << 13)) >> 14;
@@ -328,11 +337,14 @@ fn level(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, is_v: bo
         step = step.wrapping_sub(bend_of_level(attribute, above, q_step));
     }
     let step = mul_17(step, reciprocal);
-    let down = attribute.shift - place.zeros as i32;
+    let down = attribute.shift() - place.zeros as i32;
     let step = if down >= 0 { step >> (down & 31) } else { step << (-down & 31) };
-    let line_of = if is_v { Attribute::along_inside } else { Attribute::along };
-    let (at, step) = line_of(attribute, (above, step), steps as i32);
-    *line = Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 };
+    let (at, step) = match inset {
+        Some(inset) => attribute.along_inside((above, step), steps as i32, inset),
+        None => attribute.along((above, step), steps as i32),
+    };
+    let scale_log2 = attribute.scale_log2();
+    *line = Linear { at: (at << scale_log2) as u32, slope: step << scale_log2 };
 }
 
 /// (u − u₀)·q′ in units of the plane: what the step of (u − u₀)·q is more than q times the step of u. q′ is less than 2¹².
@@ -340,8 +352,8 @@ fn level(attribute: &Attribute, place: &Place, q_step: i32, steps: u32, is_v: bo
 #[inline(never)]
 fn bend_of_level(attribute: &Attribute, above: u32, q_step: i32) -> i32 {
     let offset = (above as i32).max(0).min(attribute.range as i32).wrapping_add(attribute.low);
-    let up = attribute.shift.clamp(0, 19);
-    let size = mul_high(offset << (attribute.shift - up), q_step.unsigned_abs() << up);
+    let up = attribute.shift().clamp(0, 19);
+    let size = mul_high(offset << (attribute.shift() - up), q_step.unsigned_abs() << up);
     if q_step < 0 { -size } else { size }
 }
 
@@ -352,10 +364,10 @@ fn level_further(
     place: &Place,
     q_step: i32,
     steps: u32,
-    is_v: bool,
+    inset: Option<u32>,
     line: &mut Linear,
 ) {
-    level(attribute, place, q_step, steps, is_v, line);
+    level(attribute, place, q_step, steps, inset, line);
 }
 
 /// Sets an attribute's line in 1/w, shifted left by `up`; of a triangle that is no sliver, where the horizon is near

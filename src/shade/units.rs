@@ -67,7 +67,7 @@ impl Units {
     #[inline]
     pub(crate) fn scale(&mut self, attributes: &[Attribute]) {
         for (up, attribute) in self.up.iter_mut().zip(attributes).take(self.count.into()) {
-            *up = (*up + attribute.scale_log2 as u8) & 31;
+            *up = (*up + attribute.scale_log2() as u8) & 31;
         }
     }
 
