@@ -14,7 +14,7 @@ use crate::scene::{Lighting, Lights, Vertex};
 /// The functions that compute light, by reference: the linker drops lighting from programs that do not name it.
 #[derive(Debug)]
 pub(super) struct LightCode {
-    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose, &mut bool) -> Lighting<'p>,
+    bring: for<'l, 'p> fn(&Lights<'l>, &'p Pose, &mut Lighting<'p>) -> bool,
     shading: Shading,
 }
 
@@ -55,19 +55,16 @@ impl<'p> Light<'p> {
         pose: &'p Pose,
         two_sided: bool,
     ) -> Self {
-        let mut is_gray = false;
-        Self {
-            lighting: (code.bring)(lights, pose, &mut is_gray),
-            shading: &code.shading,
-            two_sided,
-            is_gray,
-        }
+        let mut light =
+            Self { lighting: Lighting::none(), shading: &code.shading, two_sided, is_gray: false };
+        light.is_gray = (code.bring)(lights, pose, &mut light.lighting);
+        light
     }
 }
 
-/// Lights brought to a mesh in this pose, and whether they are grey.
-fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, are_gray: &mut bool) -> Lighting<'p> {
-    lights.brought(pose, are_gray)
+/// Brings lights to a mesh in this pose, and says whether they are grey.
+fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
+    lights.bring(pose, to)
 }
 
 /// A colour times the light at its vertex. (White is the light itself.)

@@ -8,7 +8,7 @@
 //! surface: there each normal and place that is lit is brought to where it stands ([`stretch`](super::stretch)).
 
 use super::normal::{Normal, across_face, facing};
-use super::point::{LocalPoint, position_in_axes};
+use super::point::{LocalPoint, POINT, PointAt, PointCode};
 use super::stretch::Stretch;
 use crate::math::{Pose, Vec3, dot, normalized};
 use crate::num::{I2F14, I4F12, I16F16, U8F8};
@@ -32,6 +32,7 @@ enum Source {
     Point {
         position: Vec3,
         range: I16F16,
+        code: &'static PointCode,
     },
 }
 
@@ -53,7 +54,7 @@ impl Light {
     /// the light itself is gets none.
     #[must_use]
     pub const fn point(position: Vec3, color: [u8; 3], range: I16F16) -> Self {
-        Self { source: Source::Point { position, range }, color }
+        Self { source: Source::Point { position, range, code: POINT }, color }
     }
 }
 
@@ -124,39 +125,40 @@ impl<'a> Lights<'a> {
     #[must_use]
     #[inline]
     pub fn in_mesh_space<'p>(&self, pose: &'p Pose) -> Lighting<'p> {
-        self.brought(pose, &mut false)
+        let mut lighting = Lighting::none();
+        self.bring(pose, &mut lighting);
+        lighting
     }
 
-    /// As [`Lights::in_mesh_space`], and says whether all of them are grey.
+    /// As [`Lights::in_mesh_space`], to lighting that has none yet. Returns whether all of them are grey.
     #[inline(never)]
-    pub(crate) fn brought<'p>(&self, pose: &'p Pose, are_gray: &mut bool) -> Lighting<'p> {
-        let ambient = self.ambient;
-        *are_gray = is_gray(ambient);
-        let mut lighting =
-            Lighting { lights: [Local::NONE; MAX], count: 0, ambient, stretch: Stretch::of(pose) };
-        let (axes, unit) = match &lighting.stretch {
+    pub(crate) fn bring<'p>(&self, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
+        let mut are_gray = is_gray(self.ambient);
+        to.ambient = self.ambient;
+        to.stretch = Stretch::of(pose);
+        let (axes, unit) = match &to.stretch {
             None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
             Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
         };
         for &Light { source, color } in self.lights {
-            *are_gray &= is_gray(color);
+            are_gray &= is_gray(color);
             let light = match source {
                 Source::Directional(towards) => {
                     Local::Directional { towards: turned_back(axes, towards), color }
                 }
-                Source::Point { position, range } if range > 0 => {
-                    let place = position_in_axes(axes, pose.translation, position);
-                    Local::Point(LocalPoint::new(place, unit, range, color))
+                Source::Point { position, range, code } if range > 0 => {
+                    to.point_at = code.at;
+                    Local::Point((code.bring)((axes, pose.translation), unit, (position, range), color))
                 }
                 Source::Point { .. } => continue,
             };
             // There is room: `try_new` counted.
-            if let Some(place) = lighting.lights.get_mut(usize::from(lighting.count)) {
+            if let Some(place) = to.lights.get_mut(usize::from(to.count)) {
                 *place = light;
-                lighting.count += 1;
+                to.count += 1;
             }
         }
-        lighting
+        are_gray
     }
 }
 
@@ -197,9 +199,11 @@ pub struct Lighting<'p> {
     ambient: [u8; 3],
     /// If the pose does not keep angles.
     stretch: Option<Stretch<'p>>,
+    /// What computes the light of a point light.
+    point_at: PointAt,
 }
 
-const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 2 * size_of::<usize>());
+const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 3 * size_of::<usize>());
 
 #[derive(Clone, Copy, Debug)]
 enum Local {
@@ -217,6 +221,18 @@ impl Local {
 }
 
 impl Lighting<'_> {
+    /// No light at all. Made by code: in flash it would take more.
+    #[inline]
+    pub(crate) fn none() -> Self {
+        Self {
+            lights: [Local::NONE; MAX],
+            count: 0,
+            ambient: [0; 3],
+            stretch: None,
+            point_at: |_, _, _, _, _| 0,
+        }
+    }
+
     /// The light that arrives at a place that faces the direction of `normal`: ambient + Σ max(0, n·l) ·
     /// colour · attenuation, limited to 255.0; `two_sided`: |n·l|.
     ///
@@ -254,7 +270,8 @@ impl Lighting<'_> {
                     (cosine - (cosine >> 7), color)
                 }
                 Local::Point(light) => {
-                    (light.at(self.stretch.as_ref(), position, normal, two_sided), &light.color)
+                    let stretch = self.stretch.as_ref();
+                    ((self.point_at)(light, stretch, position, normal, two_sided), &light.color)
                 }
             };
             for (sum, &channel) in sum.iter_mut().zip(color) {
@@ -265,7 +282,7 @@ impl Lighting<'_> {
         sum.map(limited)
     }
 
-    /// [`Lighting::at`] a vertex, but for rounding. If all lights are [grey](Lights::brought) that may be said: it saves 20 cycles.
+    /// [`Lighting::at`] a vertex, but for rounding. If all lights are [grey](Lights::bring) that may be said: it saves 20 cycles.
     #[inline(always)]
     pub(crate) fn at_vertex(&self, vertex: &Vertex, [two_sided, is_gray]: [bool; 2], to: &mut [U8F8; 3]) {
         // What there is most often, without the loop, whose invariants would be computed and kept on the stack.
