@@ -42,6 +42,9 @@ use embedded_graphics::pixelcolor::Rgb565;
 pub(crate) struct Loops<'a> {
     pub(super) texture: &'a Texture<'a>,
     pub(super) is_packed: bool,
+    /// The pixels of a block along a straight line: so many that steps, which are cut, are off by 1/16 texel in the end. Large textures
+    /// have fewer fraction bits than 10.
+    block_log2: u8,
     known: Known<'a>,
 }
 
@@ -117,7 +120,8 @@ impl<'a> Loops<'a> {
             (_, Ok(texels)) => Known::Of1024(texels),
             _ => Known::No,
         };
-        Self { texture, is_packed: texture.is_packable(scale_log2), known }
+        let block_log2 = if texture.is_large() { 3 } else { 6 };
+        Self { texture, is_packed: texture.is_packable(scale_log2), block_log2, known }
     }
 }
 
@@ -142,8 +146,7 @@ impl Loops<'_> {
         let [a, b] = self.texture.log2();
         let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
         let (mut u, mut v) = (u as i32, v as i32);
-        // After 64 pixels a step cut to 10 fraction bits is off by 1/16 texel. Large textures have fewer fraction bits.
-        let log2 = if self.texture.is_large() { 3 } else { 6 };
+        let log2 = self.block_log2 & 31;
         let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
         loop {
             let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
