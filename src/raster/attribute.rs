@@ -137,6 +137,12 @@ impl Attribute {
         self.divided(self.plane.at(place.x, place.y) as i32, place.reciprocal, place.zeros)
     }
 
+    /// Likewise, out of line.
+    #[inline(never)]
+    pub(crate) fn at_apart(&self, place: &Place) -> i32 {
+        self.at(place)
+    }
+
     /// Likewise, from the plane's value.
     #[inline]
     pub(crate) fn divided(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {

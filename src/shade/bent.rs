@@ -14,6 +14,7 @@ use super::units::Form;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{mul_high, normalised, wide};
 use crate::raster::{Attribute, Place};
+use core::hint::black_box;
 
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
 const MOST_GENERAL: u32 = 63;
@@ -25,36 +26,43 @@ impl Perspective<'_> {
         if self.setup.sliver {
             return self.bent_in_sliver(x, y, steps);
         }
-        let near = self.near(x, y, steps);
+        let near = self.place_apart(if self.setup.q_rises { x + steps as i32 } else { x }, y);
         self.bent_from(&near, steps)
+    }
+
+    /// [`Perspective::place`], out of line.
+    #[inline(never)]
+    fn place_apart(&mut self, x: i32, y: i32) -> Place {
+        self.place(x, y)
     }
 
     /// Likewise, from its near end. Not of a sliver.
     #[inline(never)]
     pub(super) fn bent_from(&mut self, near: &Place, steps: u32) -> Way {
         let (setup, rises) = (self.setup, self.setup.q_rises);
-        let Some((way, w_step)) = self.start(near, steps) else {
+        let Some((way, (size, down))) = self.start(near, steps) else {
             return Way::None;
         };
-        // A straight line is held in the range by itself.
-        if setup.is_extreme && !matches!(way, Way::Straight) {
+        if steps == 0 {
+            self.set_pixel(&|attribute| attribute.at_apart(near));
+        } else if setup.is_extreme && way != Way::Straight {
+            // A straight line is held in the range by itself.
             let x = if rises { near.x - steps as i32 } else { near.x + steps as i32 };
-            let far = self.place(x, near.y);
-            self.set_by_both_ends(steps, rises, &way, &|attribute| [attribute.at(near), attribute.at(&far)]);
-        } else if matches!(way, Way::Table) && self.units.form == Form::Modular {
-            let all = setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
-            for (i, (attribute, line)) in all.take(self.units.count) {
-                let (above, up) = (attribute.at(near), self.units.up(i, attribute));
-                let (from_horizon, log2) = from_horizon(attribute, above);
-                let u = attribute.least.wrapping_add(above);
-                let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
-                let at = (u << up).wrapping_sub(slope << ONE_LOG2) as u32;
-                *line = Linear { at, slope };
-            }
-        } else if steps > 0 {
-            self.set_by_slope(near, rises, steps, w_step, &way);
+            let far = self.place_apart(x, near.y);
+            let at = Attribute::at_apart;
+            self.set_by_both_ends(steps, way, &|attribute| [at(attribute, near), at(attribute, &far)]);
         } else {
-            self.set_pixel(&|attribute| attribute.at(near));
+            let is_table = way == Way::Table && self.units.form == Form::Modular;
+            self.set_lines(steps, way, |attribute| {
+                let above = attribute.at(near);
+                let (from_horizon, log2) = from_horizon(attribute, above);
+                let log2 = log2 as i32;
+                if is_table {
+                    (above, from_horizon, log2 - ONE_LOG2 as i32)
+                } else {
+                    (above, mul_high(from_horizon, size << 1), log2 - 1 - down)
+                }
+            });
         }
         way
     }
@@ -81,7 +89,7 @@ impl Perspective<'_> {
             self.set_pixel(&|attribute| in_sliver(attribute, &near));
         } else {
             let far = self.place_in_sliver(x + to_far as i32, y);
-            self.set_by_both_ends(steps, rises, &way, &|attribute| {
+            self.set_by_both_ends(steps, way, &|attribute| {
                 [in_sliver(attribute, &near), in_sliver(attribute, &far)]
             });
         }
@@ -117,14 +125,6 @@ impl Perspective<'_> {
         }
     }
 
-    /// Sets the line of attribute `i`, of which there are as many as lines.
-    #[inline]
-    fn set_line(&mut self, i: usize, line: Linear) {
-        if let Some(of_attribute) = self.curve.lines.get_mut(i) {
-            *of_attribute = line;
-        }
-    }
-
     /// One pixel.
     #[inline(never)]
     fn set_pixel(&mut self, at: &dyn Fn(&Attribute) -> i32) {
@@ -136,118 +136,93 @@ impl Perspective<'_> {
         }
     }
 
-    /// The forms that take the change over a pixel: all but the table's.
-    #[inline]
-    fn set_by_slope(&mut self, near: &Place, rises: bool, steps: u32, (size, down): (u32, i32), way: &Way) {
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
-            let above = attribute.at(near);
-            let u = attribute.least.wrapping_add(above);
-            // Over a pixel, away from the near end, times 2^−`log2`.
-            let (from_horizon, log2) = from_horizon(attribute, above);
-            let slope = mul_high(from_horizon, size << 1);
-            let log2 = log2 as i32 - 1 - down;
-            match way {
-                Way::Straight => self.set_straight(i, attribute, above, rises, scaled(slope, log2), steps),
-                Way::Chords => {
-                    let up = self.units.up(i, attribute);
-                    let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
-                    self.set_line(i, Linear { at: (u << up) as u32, slope });
-                }
-                _ => self.set_general(i, u, attribute.scale_log2, slope, log2),
-            }
-        }
-    }
-
-    /// A straight way, from how much more than the least there is at its near end, and the change over a pixel, I16F16.
+    /// The lines of a part. Of each attribute, `of` says how much more than the least it is at the near end; and how it changes in
+    /// t away from that, or along a straight way over a pixel: as a number and log2 of its unit.
     #[inline(always)]
-    fn set_straight(
-        &mut self,
-        i: usize,
-        attribute: &Attribute,
-        above: i32,
-        rises: bool,
-        slope: i32,
-        steps: u32,
-    ) {
-        let steps = steps as i32;
-        let far = above.wrapping_add(slope.wrapping_mul(steps));
-        let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
-        let (at, step) = attribute.along_inside((first as u32, step), steps);
-        self.set_line(
-            i,
-            Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 },
-        );
-    }
-
-    /// The general forms. The change over a pixel is `slope` · 2^−`log2`; it is kept as 15 bits and a shift, as t has 16.
-    #[inline(never)]
-    fn set_general(&mut self, i: usize, u: i32, scale_log2: u32, slope: i32, log2: i32) {
-        let log2 = log2 + scale_log2 as i32;
-        let (_, zeros) = normalised(slope.unsigned_abs().max(1));
-        let dropped = 17u32.saturating_sub(zeros) as i32;
-        let down = fraction_bits(self.units.form) as i32 - dropped - log2;
-        let slope = scaled(slope, -dropped);
-        let (slope, down) = match down {
-            ..0 => (slope.checked_shl(down.unsigned_abs()).unwrap_or(0), 0),
-            0..32 => (slope, down as u8),
-            _ => (0, 0),
-        };
-        self.set_line(i, Linear { at: (u << scale_log2) as u32, slope });
-        if let Some(of_line) = self.curve.down.get_mut(i) {
-            *of_line = down;
+    fn set_lines(&mut self, steps: u32, way: Way, of: impl Fn(&Attribute) -> (i32, i32, i32)) {
+        let Self { setup, units, curve, .. } = self;
+        let lines = curve.lines.iter_mut().zip(&mut curve.down);
+        for (i, (attribute, (line, line_down))) in
+            setup.attributes.iter().zip(lines).enumerate().take(units.count)
+        {
+            let (above, slope, log2) = of(attribute);
+            // Hidden, so that there is one loop for all ways, and not unrolled.
+            let way = *black_box(&way);
+            if units.form != Form::Modular && way == Way::Table {
+                (*line, *line_down) = general(units.form, attribute, above, slope, log2);
+                continue;
+            }
+            let up = units.up(i, attribute) as i32;
+            let slope = scaled(
+                slope,
+                log2 + match way {
+                    Way::Table => up,
+                    Way::Chords => up - CHORD_LOG2 as i32,
+                    _ => 0,
+                },
+            );
+            let u = attribute.least.wrapping_add(above) << up;
+            *line = match way {
+                Way::Table => Linear { at: u.wrapping_sub(slope << ONE_LOG2) as u32, slope },
+                Way::Chords => Linear { at: u as u32, slope },
+                _ => straight(attribute, above, setup.q_rises, slope, steps),
+            };
         }
     }
 
     /// From the values at both ends: so that the far one stays in the range, whatever the planes say.
     #[cold]
     #[inline(never)]
-    fn set_by_both_ends(
-        &mut self,
-        steps: u32,
-        rises: bool,
-        way: &Way,
-        ends: &dyn Fn(&Attribute) -> [i32; 2],
-    ) {
+    fn set_by_both_ends(&mut self, steps: u32, way: Way, ends: &dyn Fn(&Attribute) -> [i32; 2]) {
         // w at the far end.
-        let w = if rises {
+        let w = if self.setup.q_rises {
             self.curve.w
         } else {
             self.curve.w.wrapping_add(self.curve.w_step.wrapping_mul(steps))
         };
-        let t = match (way, self.units.form) {
-            (Way::Straight, _) => steps,
-            (Way::Table, Form::Modular) => inverse(w) - (1 << ONE_LOG2),
-            (_, form) => distance(form, w, steps),
+        let (t, unit_log2) = match (way, self.units.form) {
+            (Way::Straight, _) => (steps, 0),
+            (Way::Table, Form::Modular) => (inverse(w) - (1 << ONE_LOG2), 0),
+            (_, form) => (distance(form, w, steps), fraction_bits(form) as i32),
         };
         let t = Reciprocal::coarse(t);
         let mantissa = t.mantissa_below();
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count) {
+        self.set_lines(steps, way, |attribute| {
             let [above, above_far] = ends(attribute);
-            let (u, rise) = (attribute.least.wrapping_add(above), above_far - above);
             // rise/t is the product times 2^(zeros − 62). Its upper half, cut towards zero.
-            let product = wide(rise, mantissa);
-            let quotient = scaled_wide(product, -32);
-            let log2 = t.zeros as i32 - 30;
-            match way {
-                Way::Straight => self.set_straight(i, attribute, above, rises, scaled(quotient, log2), steps),
-                _ if self.units.form != Form::Modular => {
-                    self.set_general(
-                        i,
-                        u,
-                        attribute.scale_log2,
-                        quotient,
-                        log2 + fraction_bits(self.units.form) as i32,
-                    );
-                }
-                _ => {
-                    let up = self.units.up(i, attribute);
-                    let slope = scaled_wide(product, t.zeros as i32 - 62 + up as i32);
-                    let one = if matches!(way, Way::Table) { slope << ONE_LOG2 } else { 0 };
-                    self.set_line(i, Linear { at: (u << up).wrapping_sub(one) as u32, slope });
-                }
-            }
-        }
+            let product = wide(above_far - above, mantissa);
+            let size = (product.unsigned_abs() >> 32) as i32;
+            (above, if product < 0 { -size } else { size }, t.zeros as i32 - 30 + unit_log2)
+        });
     }
+}
+
+/// A straight way, from how much more than the least there is at its near end, and the change over a pixel, I16F16.
+#[inline(never)]
+fn straight(attribute: &Attribute, above: i32, rises: bool, slope: i32, steps: u32) -> Linear {
+    let steps = steps as i32;
+    let far = above.wrapping_add(slope.wrapping_mul(steps));
+    let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
+    let (at, step) = attribute.along_inside((first as u32, step), steps);
+    Linear { at: (at << attribute.scale_log2) as u32, slope: step << attribute.scale_log2 }
+}
+
+/// A line in the general forms, and how far what it makes is shifted. The change over a pixel is `slope` · 2^`log2`; it is kept as 15
+/// bits and a shift, as t has 16.
+#[inline(never)]
+fn general(form: Form, attribute: &Attribute, above: i32, slope: i32, log2: i32) -> (Linear, u8) {
+    let log2 = log2 + attribute.scale_log2 as i32;
+    let (_, zeros) = normalised(slope.unsigned_abs().max(1));
+    let dropped = 17u32.saturating_sub(zeros) as i32;
+    let down = fraction_bits(form) as i32 - dropped - log2;
+    let slope = scaled(slope, -dropped);
+    let (slope, down) = match down {
+        ..0 => (slope.checked_shl(down.unsigned_abs()).unwrap_or(0), 0),
+        0..32 => (slope, down as u8),
+        _ => (0, 0),
+    };
+    let u = attribute.least.wrapping_add(above);
+    (Linear { at: (u << attribute.scale_log2) as u32, slope }, down)
 }
 
 /// How much more than the least an attribute is at a pixel of a sliver.
@@ -290,15 +265,9 @@ fn from_horizon(attribute: &Attribute, above: i32) -> (i32, u32) {
 }
 
 /// `value` · 2^`log2`, cut towards zero, modulo 2³².
-#[inline(always)]
+#[inline]
 fn scaled(value: i32, log2: i32) -> i32 {
     if log2 >= 0 { value << log2.min(31) } else { shifted(value, (-log2).min(31) as u32) }
-}
-
-/// As [`scaled`], from 64 bits, to the right.
-fn scaled_wide(value: i64, log2: i32) -> i32 {
-    let size = (value.unsigned_abs() >> (-log2).clamp(0, 63)) as i32;
-    if value < 0 { size.wrapping_neg() } else { size }
 }
 
 #[cfg(test)]

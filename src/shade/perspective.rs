@@ -50,7 +50,7 @@ use core::hint::black_box;
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
 
 /// How a part of a row is drawn. `Table` looks 1/w up at every pixel; in the general forms n/w, which the head calls distances.
-#[derive(PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Way {
     Straight,
     Table,
