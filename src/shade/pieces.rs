@@ -292,7 +292,7 @@ impl<const M: usize, F: PixelFormat, B: Border, C: Channels<M>> Fill<F::Word>
     for LitBordered<'_, M, F, B, C>
 {
     fn units(&self) -> Units {
-        Light::<M, F, C>::units(&self.0)
+        Light::<M, F, C>::units(self.0.integer_bits())
     }
 
     #[inline(never)]
