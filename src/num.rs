@@ -184,6 +184,13 @@ const fn normalised_stepwise(mut value: u32) -> (u32, u32) {
     (value, zeros)
 }
 
+/// The leading zeros of a number of 64 bits. On Armv6-M, which has no instruction for that, there is one copy.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn leading_zeros(value: u64) -> u32 {
+    value.leading_zeros()
+}
+
 /// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.
 #[inline]
 pub(crate) const fn shift_round(value: i64, shift: u32) -> i64 {

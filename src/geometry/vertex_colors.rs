@@ -39,9 +39,11 @@ pub(crate) struct VertexColors<'p> {
 
 /// Light as it falls on one mesh.
 #[derive(Debug)]
+// In this order, likewise.
+#[repr(C)]
 pub(super) struct Light<'p> {
-    lighting: Lighting<'p>,
     shading: &'static Shading,
+    lighting: Lighting<'p>,
     /// Whether light from behind counts as if it came from in front.
     two_sided: bool,
     is_gray: bool,
@@ -56,7 +58,7 @@ impl<'p> Light<'p> {
         two_sided: bool,
     ) -> Self {
         let mut light =
-            Self { lighting: Lighting::none(), shading: &code.shading, two_sided, is_gray: false };
+            Self { lighting: lights.ambient_alone(), shading: &code.shading, two_sided, is_gray: false };
         light.is_gray = (code.bring)(lights, pose, &mut light.lighting);
         light
     }
