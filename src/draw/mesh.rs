@@ -25,12 +25,14 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
     let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
     let window = band.window().within(&projection.viewport);
-    let mut placing = Placing::new(projection, camera, pose);
+    let mut placing = Placing::ZERO;
+    placing.set(projection, camera, pose);
     if window.is_empty() || !placing.sees(projection, mesh.bounds()) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    let colors = surface.coloring.colors(sight.lights, pose);
+    let mut colors = surface.coloring.unlit();
+    surface.coloring.light(&mut colors, sight.lights, pose);
     let light_face = surface.coloring.light_face(sight.lights);
     let assembler = Assembler { mesh, placing: &placing, coloring: &colors, cull, light_face };
     let mut raster = Raster::new(

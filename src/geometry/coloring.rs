@@ -7,7 +7,7 @@
 //! A rule refers to the functions that compute light. So only programs in which a rule is lit link them.
 
 use super::assembly::{LightFace, light_face};
-use super::vertex_colors::{FACETED, Light, LightCode, SMOOTH, VertexColors};
+use super::vertex_colors::{FACETED, LightCode, SMOOTH, VertexColors};
 use crate::math::Pose;
 use crate::scene::Lights;
 
@@ -61,17 +61,26 @@ impl Coloring {
         Self { two_sided: true, ..self }
     }
 
-    /// The colours of a mesh in this pose, in the light of a view. Without lights
-    /// nothing is dark: colours are as they are unlit.
+    /// The colours of a mesh without light.
+    #[inline]
+    pub(crate) fn unlit<'p>(&self) -> VertexColors<'p> {
+        VertexColors::unlit(self.base)
+    }
+
+    /// Adds the light of a view on a mesh in this pose, if there is any. Without lights nothing is dark: colours are as they are unlit.
     ///
     /// Not inlined: what it takes is not on the stack while pixels are drawn.
     #[inline(never)]
-    pub(crate) fn colors<'p>(&self, lights: Option<&Lights<'_>>, pose: &'p Pose) -> VertexColors<'p> {
-        let light = lights.zip(self.light).map(|(lights, smooth)| {
+    pub(crate) fn light<'p>(
+        &self,
+        colors: &mut VertexColors<'p>,
+        lights: Option<&Lights<'_>>,
+        pose: &'p Pose,
+    ) {
+        if let (Some(lights), Some(smooth)) = (lights, self.light) {
             let code = self.on_faces.map_or(smooth, |(code, _)| code);
-            Light::new(code, lights, pose, self.two_sided)
-        });
-        VertexColors::new(self.base, light)
+            colors.light(code, lights, pose, self.two_sided);
+        }
     }
 
     /// What lights a face in a view with lights, with flat shading.

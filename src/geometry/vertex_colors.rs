@@ -49,21 +49,6 @@ pub(super) struct Light<'p> {
     is_gray: bool,
 }
 
-impl<'p> Light<'p> {
-    /// Lights brought to a mesh in this pose.
-    pub(super) fn new(
-        code: &'static LightCode,
-        lights: &Lights<'_>,
-        pose: &'p Pose,
-        two_sided: bool,
-    ) -> Self {
-        let mut light =
-            Self { lighting: lights.ambient_alone(), shading: &code.shading, two_sided, is_gray: false };
-        light.is_gray = (code.bring)(lights, pose, &mut light.lighting);
-        light
-    }
-}
-
 /// Brings lights to a mesh in this pose, and says whether they are grey.
 fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
     lights.bring(pose, to)
@@ -85,9 +70,26 @@ fn at_face(light: &Light<'_>, corners: [&Vertex; 3]) -> [U8F8; 3] {
 }
 
 impl<'p> VertexColors<'p> {
-    /// `base`, or the vertices' own colour if that is `None`, times the light on a mesh in this pose.
-    pub(super) fn new(base: Option<[u8; 3]>, light: Option<Light<'p>>) -> Self {
-        Self { base, light }
+    /// `base`, or the vertices' own colour if that is `None`.
+    pub(super) fn unlit(base: Option<[u8; 3]>) -> Self {
+        Self { base, light: None }
+    }
+
+    /// Adds the light on a mesh in this pose. In place, so that nothing is copied.
+    pub(super) fn light(
+        &mut self,
+        code: &'static LightCode,
+        lights: &Lights<'_>,
+        pose: &'p Pose,
+        two_sided: bool,
+    ) {
+        let light = self.light.insert(Light {
+            lighting: lights.ambient_alone(),
+            shading: &code.shading,
+            two_sided,
+            is_gray: false,
+        });
+        light.is_gray = (code.bring)(lights, pose, &mut light.lighting);
     }
 
     /// Whether all of them are grey, if those of the mesh's vertices are, or are not.

@@ -48,13 +48,14 @@ const MOST_BITS: u32 = 15;
 const FARTHEST: i32 = 640 * 16;
 
 impl Placing {
-    /// Inlined, so that nothing is copied.
-    #[inline(always)]
-    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        let mut placing = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
-        placing.to_clip.set(projection, camera, pose);
-        placing.clip = Clip::new(projection, placing.to_clip.unit_bits());
-        placing
+    /// Of no mesh.
+    pub(crate) const ZERO: Self = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
+
+    /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied.
+    #[inline]
+    pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
+        self.to_clip.set(projection, camera, pose);
+        self.clip = Clip::new(projection, self.to_clip.unit_bits());
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.
@@ -239,7 +240,8 @@ mod tests {
             let pose = pose.at(Vec3::new(stands[0], stands[1], stands[2]));
 
             let projection = camera.projection();
-            let mut placing = Placing::new(projection, camera.placement(), &pose);
+            let mut placing = Placing::ZERO;
+            placing.set(projection, camera.placement(), &pose);
             if !placing.sees(projection, mesh.bounds()) || placing.clip.whole.is_none() {
                 return Ok(());
             }

@@ -153,21 +153,22 @@ impl<'a> Lights<'a> {
         };
         for &Light { source, color } in self.lights {
             are_gray &= is_gray(color);
-            let light = match source {
+            // There is room: `try_new` counted.
+            let Some(place) = to.lights.get_mut(usize::from(to.count)) else {
+                break;
+            };
+            match source {
                 Source::Directional(towards) => {
-                    Local::Directional { towards: turned_back(axes, towards), color }
+                    *place = Local::Directional { towards: turned_back(axes, towards), color };
                 }
                 Source::Point { position, range, code } if range > 0 => {
                     to.point_at = code.at;
-                    Local::Point((code.bring)((axes, pose.translation), unit, (position, range), color))
+                    let at = (axes, pose.translation);
+                    *place = Local::Point((code.bring)(at, unit, (position, range), color));
                 }
                 Source::Point { .. } => continue,
-            };
-            // There is room: `try_new` counted.
-            if let Some(place) = to.lights.get_mut(usize::from(to.count)) {
-                *place = light;
-                to.count += 1;
             }
+            to.count += 1;
         }
         are_gray
     }
