@@ -154,15 +154,17 @@ impl Clip {
     ) -> (usize, bool) {
         let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
         let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
+        let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
-            self.start(to_clip, coloring, vertex, &mut polygon, i);
+            outside |= self.start(to_clip, coloring, vertex, &mut polygon, i);
         }
-        // A side outside of which no vertex lies cuts nothing off.
-        let outside = (0..3).fold(0, |all, i| all | Self::outside(&polygon, i));
-        for side in 0..6 {
-            if outside >> side & 1 != 0 {
+        // A side outside of which no vertex lies cuts nothing off. (In a loop that is not unrolled.)
+        let mut side = 0;
+        while outside != 0 {
+            if outside & 1 != 0 {
                 self.cut_by(&mut polygon, side);
             }
+            (outside, side) = (outside >> 1, side + 1);
         }
         let count = polygon.count;
         for i in 0..count {
@@ -173,7 +175,8 @@ impl Clip {
         (count, is_folded)
     }
 
-    /// Sets corner `i` to a vertex of the triangle: clip coordinates, attributes and, if it needs no clipping, its position.
+    /// Sets corner `i` to a vertex of the triangle: clip coordinates, attributes and, if it needs no clipping, its position. Returns the
+    /// sides outside of which it lies.
     #[inline(never)]
     fn start(
         &self,
@@ -182,7 +185,7 @@ impl Clip {
         vertex: &Vertex,
         polygon: &mut Polygon<'_>,
         i: usize,
-    ) {
+    ) -> u32 {
         let mut may_be_inside = true;
         if self.is_fine {
             for axis in [2, 0, 1] {
@@ -201,7 +204,7 @@ impl Clip {
         }
         self.look(polygon, i);
         let Some(to) = polygon.vertices.get_mut(i) else {
-            return;
+            return 0;
         };
         to.set_attributes(vertex, coloring);
         // `place_bare` may overwrite it.
@@ -209,7 +212,9 @@ impl Clip {
         // The first condition saves that work: most often such a vertex is behind the eye.
         if !may_be_inside || !self.place_bare(to_clip, vertex, to) {
             (to.x, to.y) = (NOT_PLACED, outside);
+            return outside.to_bits() as u32;
         }
+        0
     }
 
     /// Sets one clip coordinate of corner `i` from all bits there are: w (axis 2) first, as x and y need it.

@@ -246,10 +246,11 @@ impl Loops<'_> {
         pixels: &mut [F::Word],
         texels: &[[u16; SIDE]; SIDE],
         curve: &Curve,
+        first_pass: impl Fn(&mut [F::Word], &Curve),
     ) {
         let shift = 32 - A;
         let [u, v, ..] = curve.lines;
-        Self::each::<F, false>(pixels, curve, [u, v], move |u, v| {
+        Self::each::<F, false>(pixels, curve, [u, v], first_pass, move |u, v| {
             texels[(v >> shift) as usize & (SIDE - 1)][(u >> shift) as usize & (SIDE - 1)]
         });
     }
@@ -260,11 +261,13 @@ impl Loops<'_> {
         pixels: &mut [F::Word],
         curve: &Curve,
         [u, v]: [Linear; 2],
+        first_pass: impl Fn(&mut [F::Word], &Curve),
         texel: impl Fn(u32, u32) -> u16,
     ) {
         let word = |t: u32| F::rgb565(texel(u.value(t), v.value(t)));
         if IS_ARMV6M && F::KEEPS {
-            in_passes::<CHORDS, F>(pixels, curve, word);
+            first_pass(pixels, curve);
+            second_pass::<F>(pixels, word);
         } else {
             at_once::<CHORDS, F>(pixels, curve, word);
         }
@@ -272,7 +275,7 @@ impl Loops<'_> {
 
     #[inline(never)]
     fn table_32<F: PixelFormat>(&self, pixels: &mut [F::Word], texels: &[u16; 0x400], curve: &Curve) {
-        self.table_sized::<F, 5, 32>(pixels, must_cast_ref(texels), curve);
+        self.table_sized::<F, 5, 32>(pixels, must_cast_ref(texels), curve, leave_apart::<false, F>);
     }
 
     /// Likewise, of any size.
@@ -320,7 +323,9 @@ impl Loops<'_> {
     #[inline]
     pub(super) fn table<F: PixelFormat>(&self, pixels: &mut [F::Word], curve: &Curve) {
         match self.known {
-            Known::Of64x64(texels) => self.table_sized::<F, 6, 64>(pixels, must_cast_ref(texels), curve),
+            Known::Of64x64(texels) => {
+                self.table_sized::<F, 6, 64>(pixels, must_cast_ref(texels), curve, leave_ts::<false, F>);
+            }
             Known::Of32x32(texels) => self.table_32::<F>(pixels, texels, curve),
             _ => self.each_any::<F, false>(pixels, curve),
         }
@@ -332,14 +337,9 @@ impl Loops<'_> {
     }
 }
 
-/// Words made of t, which a first pass leaves in the pixels: 1/w takes 8.3 cycles a pixel on a Cortex-M0+, and the second pass 22.9.
+/// Words made of t, which a first pass left in the pixels: 1/w takes 8.3 cycles a pixel on a Cortex-M0+, and the second pass 22.9.
 #[inline(always)]
-pub(super) fn in_passes<const CHORDS: bool, F: PixelFormat>(
-    pixels: &mut [F::Word],
-    curve: &Curve,
-    word: impl Fn(u32) -> F::Word,
-) {
-    first_pass::<CHORDS, F>(pixels, curve);
+pub(super) fn second_pass<F: PixelFormat>(pixels: &mut [F::Word], word: impl Fn(u32) -> F::Word) {
     let (fours, rest) = pixels.as_chunks_mut::<4>();
     for four in fours {
         four.iter_mut().for_each(|pixel| *pixel = word(F::kept(*pixel).into()));
@@ -353,7 +353,7 @@ pub(super) fn in_passes<const CHORDS: bool, F: PixelFormat>(
 
 /// Leaves t in the pixels.
 #[inline(always)]
-fn first_pass<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
+fn leave_ts<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
     if !CHORDS {
         return leave::<F>(pixels, curve.w, curve.w_step);
     }
@@ -366,8 +366,8 @@ fn first_pass<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve:
 
 /// Likewise, for loops that share it.
 #[inline(never)]
-fn leave_apart<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
-    first_pass::<CHORDS, F>(pixels, curve);
+pub(super) fn leave_apart<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
+    leave_ts::<CHORDS, F>(pixels, curve);
 }
 
 /// The same in one loop: with 1/w 15 cycles a pixel on a Cortex-M4, where it is not unrolled.

@@ -17,7 +17,7 @@ use super::curve::{Curve, Linear, distance};
 use super::fill::Fill;
 use super::inverses::inverse;
 use super::light::{FillTexels, Light};
-use super::loops::Loops;
+use super::loops::{Loops, leave_apart};
 use super::packed::integer_bits;
 use super::texels::Texels;
 use super::units::{Form, Units};
@@ -231,8 +231,8 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
                     black_box(());
                 }
             }
-            Way::Table => Loops::each::<F, false>(pixels, curve, [u, v], texel),
-            Way::Chords => Loops::each::<F, true>(pixels, curve, [u, v], texel),
+            Way::Table => Loops::each::<F, false>(pixels, curve, [u, v], leave_apart::<false, F>, texel),
+            Way::Chords => Loops::each::<F, true>(pixels, curve, [u, v], leave_apart::<true, F>, texel),
         }
     }
 }

@@ -147,10 +147,7 @@ impl<'a> Lights<'a> {
     pub(crate) fn bring<'p>(&self, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
         let mut are_gray = is_gray(self.ambient);
         to.stretch = Stretch::of(pose);
-        let (axes, unit) = match &to.stretch {
-            None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
-            Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
-        };
+        let stretch = to.stretch.as_ref();
         for &Light { source, color } in self.lights {
             are_gray &= is_gray(color);
             // There is room: `try_new` counted.
@@ -159,14 +156,16 @@ impl<'a> Lights<'a> {
             };
             match source {
                 Source::Directional(towards) => {
+                    let axes = stretch.map_or(&pose.rotation, Stretch::axes);
                     *place = Local::Directional { towards: turned_back(axes, towards), color };
                 }
-                Source::Point { position, range, code } if range > 0 => {
+                Source::Point { position, range, code } => {
+                    let Some(point) = (code.bring)(pose, stretch, (position, range), color) else {
+                        continue;
+                    };
                     to.point_at = code.at;
-                    let at = (axes, pose.translation);
-                    *place = Local::Point((code.bring)(at, unit, (position, range), color));
+                    *place = Local::Point(point);
                 }
-                Source::Point { .. } => continue,
             }
             to.count += 1;
         }

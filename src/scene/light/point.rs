@@ -2,16 +2,17 @@
 
 use super::normal::{Direction, Normal, facing, magnitude64};
 use super::stretch::Stretch;
-use crate::math::Vec3;
 use crate::math::recip::Reciprocal;
+use crate::math::{Pose, Vec3};
 use crate::num::{I2F14, I4F12, I16F16, wide};
 use core::{array, num::NonZeroU16};
 
 /// The functions of point lights. A light that is one refers to them: so only programs that make one link them.
 #[derive(Debug)]
 pub(super) struct PointCode {
-    /// Brings one to a mesh: along axes from an origin, in a unit as [`LocalPoint::new`] takes it; its place and range; its colour.
-    pub(super) bring: fn((&[[I2F14; 3]; 3], Vec3), (u32, i32), (Vec3, I16F16), [u8; 3]) -> LocalPoint,
+    /// Brings one to a mesh that stands as a pose says, and may be stretched: from its place and range, and its colour. `None` if its
+    /// light reaches nothing.
+    pub(super) bring: fn(&Pose, Option<&Stretch<'_>>, (Vec3, I16F16), [u8; 3]) -> Option<LocalPoint>,
     pub(super) at: PointAt,
 }
 
@@ -30,12 +31,17 @@ impl PartialEq for PointCode {
 impl Eq for PointCode {}
 
 fn bring(
-    (axes, origin): (&[[I2F14; 3]; 3], Vec3),
-    unit: (u32, i32),
+    pose: &Pose,
+    stretch: Option<&Stretch<'_>>,
     (position, range): (Vec3, I16F16),
     color: [u8; 3],
-) -> LocalPoint {
-    LocalPoint::new(position_in_axes(axes, origin, position), unit, range, color)
+) -> Option<LocalPoint> {
+    let (axes, unit) = match stretch {
+        None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
+        Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
+    };
+    (range > 0)
+        .then(|| LocalPoint::new(position_in_axes(axes, pose.translation, position), unit, range, color))
 }
 
 /// A point light in mesh space, or around a stretched mesh in the axes of the world.
