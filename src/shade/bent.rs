@@ -12,7 +12,7 @@ use super::packed::shifted;
 use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{mul_high, normalised, wide};
+use crate::num::{IS_ARMV6M, mul_high, normalised, wide};
 use crate::raster::{Attribute, Place};
 use core::hint::black_box;
 
@@ -147,7 +147,7 @@ impl Perspective<'_> {
         {
             let (above, slope, log2) = of(attribute);
             // Hidden, so that there is one loop for all ways, and not unrolled.
-            let way = *black_box(&way);
+            let way = if IS_ARMV6M { *black_box(&way) } else { way };
             if units.form != Form::Modular && way == Way::Table {
                 (*line, *line_down) = general(units.form, attribute, above, slope, log2);
                 continue;
