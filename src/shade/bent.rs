@@ -128,9 +128,10 @@ impl Perspective<'_> {
     /// One pixel.
     #[inline(never)]
     fn set_pixel(&mut self, at: &dyn Fn(&Attribute) -> i32) {
-        for (attribute, line) in
-            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count)
-        {
+        // Slices of a length that is hidden, so that the loop is not unrolled.
+        let (attributes, lines): (&[Attribute], &mut [Linear]) =
+            (black_box(&self.setup.attributes), black_box(&mut self.curve.lines));
+        for (attribute, line) in attributes.iter().zip(lines).take(self.units.count) {
             let u = attribute.least.wrapping_add(at(attribute));
             *line = Linear { at: (u << attribute.scale_log2) as u32, slope: 0 };
         }
@@ -226,6 +227,7 @@ fn general(form: Form, attribute: &Attribute, above: i32, slope: i32, log2: i32)
 }
 
 /// How much more than the least an attribute is at a pixel of a sliver.
+#[inline(never)]
 fn in_sliver(attribute: &Attribute, (place, weights): &(Place, [u32; 2])) -> i32 {
     attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
 }

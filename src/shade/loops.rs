@@ -14,7 +14,8 @@
 //! ```
 //!
 //! With the number of texels an array's, the compiler sees that the index cannot be outside it: 9 cycles a pixel on a
-//! Cortex-M0+ where a bounds check would make it 20. That is so for 32×32 and 64×64 texels and whatever has as many.
+//! Cortex-M0+ where a bounds check would make it 20. That is so for 64×64 texels and whatever has as many. For 32×32 and whatever
+//! has as many nothing is checked either, but to save flash the loop is not unrolled: 16.
 //!
 //! A carry from u moves v by its last bit; steps are cut to their last bit towards zero. So lines are so short,
 //! before they start anew from 32 bits, that all of that is 1/16 texel at most. [`Packing`](crate::raster::Packing)
@@ -129,15 +130,12 @@ impl Loops<'_> {
     /// Along a straight line, from packed coordinates on. Not unrolled.
     #[inline(never)]
     fn line<F: PixelFormat>(&self, pixels: &mut [F::Word], packed: u32, step: u32) {
+        if let Known::Of32x32(texels) | Known::Of1024(texels) = self.known {
+            return line_of_1024::<F>(sized(self.texture, texels), pixels, packed, step);
+        }
         // A copy stays in registers.
         let texture = *self.texture;
-        match self.known {
-            Known::Of32x32(texels) | Known::Of1024(texels) => {
-                let texel = sized(&texture, texels);
-                draw_row(pixels, packed, step, |packed| F::rgb565(texel(packed)));
-            }
-            _ => draw_row(pixels, packed, step, |packed| F::rgb565(texture.fetch_packed(packed))),
-        }
+        draw_row(pixels, packed, step, |packed| F::rgb565(texture.fetch_packed(packed)));
     }
 
     /// Along a straight line of packed coordinates, in blocks so short that truncated steps do not matter.
@@ -383,6 +381,12 @@ pub(super) fn at_once<const CHORDS: bool, F: PixelFormat>(
         *pixel = word(ts.next());
         black_box(());
     }
+}
+
+/// Likewise, of 1024 texels. A function of its own, for its registers.
+#[inline(never)]
+fn line_of_1024<F: PixelFormat>(texel: impl Fn(u32) -> u16, pixels: &mut [F::Word], packed: u32, step: u32) {
+    draw_row(pixels, packed, step, |packed| F::rgb565(texel(packed)));
 }
 
 /// [`sized`] of a texture that is a square. On a Cortex-M4 its numbers are best constants, 3 cycles a chord's pixel less; on Armv6-M

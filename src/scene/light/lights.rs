@@ -13,7 +13,7 @@ use super::stretch::Stretch;
 use crate::math::{Pose, Vec3, dot, normalized};
 use crate::num::{I2F14, I4F12, I16F16, U8F8};
 use crate::scene::{Vertex, is_gray};
-use core::{array, fmt};
+use core::{array, fmt, hint::black_box};
 
 const MAX: usize = 4;
 
@@ -263,6 +263,8 @@ impl Lighting<'_> {
     fn arriving(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in self.lights() {
+            // Hidden, so that there is one loop, not one for each.
+            let two_sided = black_box(two_sided);
             let (cosine, color) = match light {
                 Local::Directional { towards, color } => {
                     let cosine = facing(normal.dot(towards.map(i32::from)), two_sided);
