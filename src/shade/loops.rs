@@ -27,10 +27,10 @@
 //! Those for [`Rgb565`] are functions without type parameters, so that they are compiled with this crate and at its level of
 //! optimisation, not at that of the program.
 
-use super::curve::{CHORD, Chords, Curve, Linear, Ts};
+use super::curve::{CHORD, Chords, Curve, Linear};
 use super::fill::{draw_row, plus};
-use super::inverses::leave;
 use super::packed::{downs, lines_of, packed_from, packed_step, shifted, sized, turned};
+use super::passes::{at_once, leave_apart, leave_ts, second_pass};
 use crate::frame::PixelFormat;
 use crate::num::IS_ARMV6M;
 use crate::raster::ATTRIBUTES;
@@ -336,60 +336,13 @@ impl Loops<'_> {
     }
 }
 
-/// Words made of t, which a first pass left in the pixels: 1/w takes 8.3 cycles a pixel on a Cortex-M0+, and the second pass 22.9.
-#[inline(always)]
-pub(super) fn second_pass<F: PixelFormat>(pixels: &mut [F::Word], word: impl Fn(u32) -> F::Word) {
-    let (fours, rest) = pixels.as_chunks_mut::<4>();
-    for four in fours {
-        four.iter_mut().for_each(|pixel| *pixel = word(F::kept(*pixel).into()));
-        black_box(());
-    }
-    for pixel in rest {
-        *pixel = word(F::kept(*pixel).into());
-        black_box(());
-    }
-}
-
-/// Leaves t in the pixels.
-#[inline(always)]
-fn leave_ts<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
-    if !CHORDS {
-        return leave::<F>(pixels, curve.w, curve.w_step);
-    }
-    let mut ts = Ts::<true>::new(curve);
-    for pixel in pixels {
-        *pixel = F::keep(ts.next() as u16);
-        black_box(());
-    }
-}
-
-/// Likewise, for loops that share it.
-#[inline(never)]
-pub(super) fn leave_apart<const CHORDS: bool, F: PixelFormat>(pixels: &mut [F::Word], curve: &Curve) {
-    leave_ts::<CHORDS, F>(pixels, curve);
-}
-
-/// The same in one loop: with 1/w 15 cycles a pixel on a Cortex-M4, where it is not unrolled.
-#[inline(always)]
-pub(super) fn at_once<const CHORDS: bool, F: PixelFormat>(
-    pixels: &mut [F::Word],
-    curve: &Curve,
-    word: impl Fn(u32) -> F::Word,
-) {
-    let mut ts = Ts::<CHORDS>::new(curve);
-    for pixel in pixels {
-        *pixel = word(ts.next());
-        black_box(());
-    }
-}
-
-/// Likewise, of 1024 texels. A function of its own, for its registers.
+/// Along a straight line, of 1024 texels. A function of its own, for its registers.
 #[inline(never)]
 fn line_of_1024<F: PixelFormat>(texel: impl Fn(u32) -> u16, pixels: &mut [F::Word], packed: u32, step: u32) {
     draw_row(pixels, packed, step, |packed| F::rgb565(texel(packed)));
 }
 
-/// [`sized`] of a texture that is a square. On a Cortex-M4 its numbers are best constants, 3 cycles a chord's pixel less; on Armv6-M
+/// [`sized`] of a texture that is a square. On a Cortex-M4 its numbers are best constants, 10 cycles a chord less; on Armv6-M
 /// they need registers anyhow.
 #[inline(always)]
 fn of_64x64(texture: &Texture<'_>, texels: &[u16; 0x1000]) -> impl Fn(u32) -> u16 {

@@ -97,8 +97,8 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::curve::Linear;
-    use super::super::loops::{at_once, leave_apart, second_pass};
     use super::super::packed::lines_of;
+    use super::super::passes::{at_once, leave_apart, second_pass};
     use super::*;
     use crate::frame::BigEndian;
     use embedded_graphics::pixelcolor::Rgb565;
