@@ -28,9 +28,16 @@ pub(crate) const IS_ARMV6M: bool =
 /// The product of two 32-bit numbers in 64 bits: the only wide multiply in the crate.
 ///
 /// Most cores have an instruction for it. Armv6-M has not: there the compiler would call a library
-/// routine for 64 × 64 bits (52 instructions), so the product is put together from four 16-bit ones.
-#[inline]
+/// routine for 64 × 64 bits (52 instructions), so the product is put together from four 16-bit ones: 34 cycles, and not inlined.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 pub(crate) const fn wide(a: i32, b: i32) -> i64 {
+    wide_inlined(a, b)
+}
+
+/// As [`wide`], 13 cycles faster on Armv6-M, and 40 bytes longer wherever it is.
+#[inline(always)]
+pub(crate) const fn wide_inlined(a: i32, b: i32) -> i64 {
     if IS_ARMV6M { wide_split(a, b) } else { a as i64 * b as i64 }
 }
 
@@ -106,7 +113,7 @@ const fn mul_20_split(a: i32, b: u32) -> i32 {
 /// `a · b / 2^S`, rounded to nearest, halves up; the low 32 bits of it.
 #[inline]
 pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
-    ((wide(a, b) + (1 << (S - 1))) >> S) as i32
+    ((wide_inlined(a, b) + (1 << (S - 1))) >> S) as i32
 }
 
 /// `a · b / 2³⁰`, rounded down, for an `a` within ±2⁵⁹ if the result is.
@@ -116,10 +123,10 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 pub(crate) const fn mul_long(a: i64, b: i32) -> i64 {
     if a == a as i32 as i64 {
-        return wide(a as i32, b) >> 30;
+        return wide_inlined(a as i32, b) >> 30;
     }
     let (upper, lower) = ((a >> 30) as i32, (a & ((1 << 30) - 1)) as i32);
-    wide(upper, b) + (wide(lower, b) >> 30)
+    wide_inlined(upper, b) + (wide_inlined(lower, b) >> 30)
 }
 
 /// The upper 32 bits of `a · b` for a `b` of 0 … 2³¹, or up to 2 less: three short products on Armv6-M.
@@ -175,6 +182,13 @@ const fn normalised_stepwise(mut value: u32) -> (u32, u32) {
         (value, zeros) = (value << 1, zeros + 1);
     }
     (value, zeros)
+}
+
+/// The leading zeros of a number of 64 bits. On Armv6-M, which has no instruction for that, there is one copy.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn leading_zeros(value: u64) -> u32 {
+    value.leading_zeros()
 }
 
 /// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.

@@ -302,7 +302,8 @@ impl Quad {
         let corner = |x, y| Vertex { position: [x, y, I4F12::ZERO], ..Default::default() };
         // At most 7.9998, which has a negative.
         let vertices = [corner(-right, top), corner(-right, -top), corner(right, -top), corner(right, top)];
-        let mut placing = Placing::new(projection, camera, pose);
+        let mut placing = Placing::ZERO;
+        placing.set(projection, camera, pose);
         let bounds = Mesh::try_new(&vertices, &[]).ok().map(|mesh| *mesh.bounds())?;
         if !placing.sees(projection, &bounds) {
             return None;

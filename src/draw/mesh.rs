@@ -7,7 +7,7 @@
 use super::sight::Sight;
 use super::triangle::Raster;
 use crate::frame::{Band, DepthFormat, PixelFormat};
-use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache, VertexColors};
+use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
@@ -28,7 +28,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
     let mut assembler = Assembler {
         mesh,
         placing: Placing::ZERO,
-        coloring: VertexColors::default(),
+        coloring: surface.coloring.unlit(),
         cull,
         light_face: surface.coloring.light_face(sight.lights),
     };
@@ -37,7 +37,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
-    surface.coloring.set_colors(sight.lights, pose, &mut assembler.coloring);
+    surface.coloring.light(&mut assembler.coloring, sight.lights, pose);
     let mut raster = Raster::new(
         (&surface.look, sight.fog),
         [projection.orthographic, assembler.coloring.are_gray(mesh.bounds().is_gray)],

@@ -21,6 +21,7 @@ use super::transform::{FINE, ToClip, focal_log2, least_w};
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
 use crate::scene::{Bounds, Projection, Vertex};
+use core::hint::black_box;
 use core::ops::RangeInclusive;
 
 /// Where clipping cuts, ±1022¾ px: beyond the centres of the first and the last column and row that may be drawn, −1022½ and
@@ -103,19 +104,9 @@ impl Clip {
 
     #[inline(never)]
     pub(crate) fn new(projection: &Projection, unit_bits: i32) -> Self {
-        // To clip units: up for the near plane, so that nothing that is drawn has a q above 1.
-        let in_units = |distance: I16F16, round_up: bool| {
-            let distance = i64::from(distance.to_bits());
-            let units = if unit_bits >= 16 {
-                distance << (unit_bits - 16)
-            } else {
-                (distance + if round_up { (1 << (16 - unit_bits)) - 1 } else { 0 }) >> (16 - unit_bits)
-            };
-            // A plane beyond all clip coordinates.
-            units.min(i64::from(i32::MAX)) as i32
-        };
-        let near = in_units(projection.near, true);
-        let far = if projection.far == I16F16::MAX { i32::MAX } else { in_units(projection.far, false) };
+        let near = in_units(projection.near, unit_bits, true);
+        let far =
+            if projection.far == I16F16::MAX { i32::MAX } else { in_units(projection.far, unit_bits, false) };
         let (depth_mantissa, depth_zeros) = if projection.orthographic {
             let range = Reciprocal::precise(far.saturating_sub(near).max(1) as u32);
             (range.mantissa, range.zeros as i32 - 1)
@@ -140,6 +131,7 @@ impl Clip {
 
     /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond
     /// all that there is. A plane at the format's end is none: a mesh that stands there reaches further.
+    #[inline(never)]
     pub(super) fn distance_of(to_clip: &ToClip, plane: I16F16) -> i64 {
         if plane == I16F16::MAX {
             return 1 << 46;
@@ -172,15 +164,15 @@ impl Clip {
         {
             return None;
         }
-        let sides = [
-            (0, -1, i32::from(viewport.left)),
-            (0, 1, i32::from(viewport.left) + i32::from(viewport.width)),
-            (1, -1, i32::from(viewport.top)),
-            (1, 1, i32::from(viewport.top) + i32::from(viewport.height)),
-        ];
-        let is_seen = sides.into_iter().all(|(axis, sign, side)| {
+        let sides = [(viewport.left, viewport.width), (viewport.top, viewport.height)];
+        let is_seen = (0..4).all(|i| {
+            let (axis, is_end) = (i >> 1, i & 1 != 0);
+            let (start, length) = sides[axis];
+            let side = i32::from(start) + if is_end { i32::from(length) } else { 0 };
             let slope = side * 16 - projection.center[axis];
-            self.reaches(to_clip, [center[axis], w], radius, (axis, sign, slope))
+            // Not unrolled.
+            black_box(());
+            self.reaches(to_clip, [center[axis], w], radius, (axis, if is_end { 1 } else { -1 }, slope))
         });
         is_seen.then_some(center)
     }
@@ -270,6 +262,19 @@ impl Clip {
         *to_y = I12F4::from_bits(y as i16);
         true
     }
+}
+
+/// A plane's distance in clip units: up for the near plane, so that nothing that is drawn has a q above 1.
+#[inline(never)]
+fn in_units(distance: I16F16, unit_bits: i32, round_up: bool) -> i32 {
+    let distance = i64::from(distance.to_bits());
+    let units = if unit_bits >= 16 {
+        distance << (unit_bits - 16)
+    } else {
+        (distance + if round_up { (1 << (16 - unit_bits)) - 1 } else { 0 }) >> (16 - unit_bits)
+    };
+    // A plane beyond all clip coordinates.
+    units.min(i64::from(i32::MAX)) as i32
 }
 
 /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.

@@ -61,26 +61,22 @@ impl Coloring {
         Self { two_sided: true, ..self }
     }
 
-    /// The colours of a mesh in this pose, in the light of a view. Without lights
-    /// nothing is dark: colours are as they are unlit.
-    ///
-    pub(crate) fn colors<'p>(&self, lights: Option<&Lights<'_>>, pose: &'p Pose) -> VertexColors<'p> {
-        let mut colors = VertexColors::default();
-        self.set_colors(lights, pose, &mut colors);
-        colors
+    /// The colours of a mesh without light.
+    #[inline]
+    pub(crate) fn unlit<'p>(&self) -> VertexColors<'p> {
+        VertexColors::unlit(self.base)
     }
 
-    /// The same in place, so that nothing is copied.
+    /// Adds the light of a view on a mesh in this pose, if there is any. Without lights nothing is dark: colours are as they are unlit.
     ///
     /// Not inlined: what it takes is not on the stack while pixels are drawn.
     #[inline(never)]
-    pub(crate) fn set_colors<'p>(
+    pub(crate) fn light<'p>(
         &self,
+        colors: &mut VertexColors<'p>,
         lights: Option<&Lights<'_>>,
         pose: &'p Pose,
-        colors: &mut VertexColors<'p>,
     ) {
-        *colors = VertexColors::unlit(self.base);
         if let (Some(lights), Some(smooth)) = (lights, self.light) {
             let code = self.on_faces.map_or(smooth, |(code, _)| code);
             colors.light(code, lights, pose, self.two_sided);

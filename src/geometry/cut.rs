@@ -152,14 +152,14 @@ impl Clip {
     ) -> (usize, bool) {
         let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
         let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
+        let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
-            self.start(to_clip, vertex, &mut polygon, i);
+            outside |= self.start(to_clip, vertex, &mut polygon, i);
         }
-        // A side outside of which no vertex lies cuts nothing off.
-        let outside = (0..3).fold(0, |all, i| all | Self::outside(&polygon, i));
+        // A side outside of which no vertex lies cuts nothing off. (In a loop that is not unrolled.)
         let mut side = 0;
-        while outside >> side != 0 {
-            if outside >> side & 1 != 0
+        while outside != 0 {
+            if outside & 1 != 0
                 && let Some(stay) = Self::open(&mut polygon, side)
             {
                 // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
@@ -169,7 +169,7 @@ impl Clip {
                 self.cross(&mut polygon, [stay - 1, stay, stay], side);
                 polygon.count = stay + 2;
             }
-            side += 1;
+            (outside, side) = (outside >> 1, side + 1);
         }
         let count = polygon.count;
         for i in 0..count {
@@ -180,9 +180,10 @@ impl Clip {
         (count, is_folded)
     }
 
-    /// Sets corner `i` to a vertex of the triangle: clip coordinates and, if it needs no clipping, its position.
+    /// Sets corner `i` to a vertex of the triangle: clip coordinates and, if it needs no clipping, its position. Returns the sides outside
+    /// of which it lies.
     #[inline(never)]
-    fn start(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, i: usize) {
+    fn start(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, i: usize) -> u32 {
         let mut may_be_inside = true;
         if self.is_fine {
             for axis in [2, 0, 1] {
@@ -201,14 +202,16 @@ impl Clip {
         }
         self.look(polygon, i);
         let Some(to) = polygon.vertices.get_mut(i) else {
-            return;
+            return 0;
         };
         // `place_bare` may overwrite it.
         let outside = to.y;
         // The first condition saves that work: most often such a vertex is behind the eye.
         if !may_be_inside || !self.place_bare(to_clip, vertex, to) {
             (to.x, to.y) = (NOT_PLACED, outside);
+            return outside.to_bits() as u32;
         }
+        0
     }
 
     /// Sets one clip coordinate of corner `i` from all bits there are: w (axis 2) first, as x and y need it.

@@ -13,8 +13,9 @@
 //! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
 use crate::math::Pose;
-use crate::num::{I4F12, I16F16, U10F22, mul_long, mul_round, shift_round, wide};
+use crate::num::{I4F12, I16F16, U10F22, leading_zeros, mul_long, mul_round, shift_round, wide};
 use crate::scene::{Bounds, Projection, Viewport};
+use core::array;
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
 pub(crate) const fn focal_log2(focal: I16F16) -> i32 {
@@ -54,6 +55,15 @@ struct Row {
 }
 
 impl Row {
+    /// Sets the elements, from a row of the matrix without its last `excess` bits, times the focal length's mantissa if that is not 0.
+    #[inline(never)]
+    fn set(&mut self, matrix: &[i64; 3], focal: i32, [excess, shift]: [i32; 2]) {
+        for (to, element) in self.elements.iter_mut().zip(matrix) {
+            // 30 bits; then 15 fraction bits.
+            *to = halves(((shortened(*element, excess, focal) >> shift) + 1) >> 1);
+        }
+    }
+
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
         let (mut whole, mut rest) = (self.translation, 0);
@@ -115,6 +125,7 @@ fn rest(value: i64, shift: i32, focal: i32, rounded: i32) -> i16 {
 /// 3·(2^k + c)/w px for a focal length of up to 2^k: within 1/128 px where w ≥ 384·(2^k + c), c being that of the viewport's sides.
 /// (What lies farther out is off by more, and as much less its edges are where they come into view.) Without perspective 1 takes
 /// the place of w, and nothing is added for c.
+#[inline(never)]
 pub(super) fn least_w(projection: &Projection, unit_bits: i32) -> i32 {
     let focal_log2 = focal_log2(projection.focal);
     if !projection.orthographic {
@@ -152,7 +163,7 @@ impl ToClip {
         for row in 0..3 {
             exact.set_row(row, camera, pose);
         }
-        let [of_matrix, of_translation] = exact.all.map(|all| 64 - all.leading_zeros() as i32);
+        let [of_matrix, of_translation] = exact.all.map(|all| 64 - leading_zeros(all) as i32);
         let excess = of_matrix - 30;
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
@@ -173,10 +184,7 @@ impl ToClip {
         for ((row, focal), (matrix, translation)) in
             self.rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
         {
-            for (to, element) in row.elements.iter_mut().zip(matrix) {
-                // 30 bits; then 15 fraction bits.
-                *to = halves(((shortened(*element, excess, focal) >> shift) + 1) >> 1);
-            }
+            row.set(matrix, focal, [excess, shift]);
             row.translation = shortened(translation, 30 - unit_bits, focal);
         }
         let least = least_w(projection, unit_bits);
@@ -336,10 +344,7 @@ impl Exact {
         self.translation[row] = to - from;
         self.all[1] |= (to - from).unsigned_abs();
         for (column, to) in self.matrix[row].iter_mut().enumerate() {
-            let turned = pose.rotation.map(|r| i32::from(r[column].to_bits()));
-            // Products are within ±2³⁰.
-            let sum = (0..3).fold(0_i32, |sum, i| sum.saturating_add(axis[i] * turned[i]));
-            *to = scaled(sum.clamp(-1 << 30, 1 << 30), pose.scale[column]);
+            *to = scaled_axis(axis, pose, column);
             self.all[0] |= to.unsigned_abs();
         }
     }
@@ -352,7 +357,15 @@ fn along(axis: [i32; 3], vector: [i32; 3]) -> i64 {
     wide(x, vector[0]) + wide(y, vector[1]) + wide(z, vector[2])
 }
 
+/// How far an axis of a pose reaches along another axis, times its scale.
 #[inline(never)]
+fn scaled_axis(axis: [i32; 3], pose: &Pose, column: usize) -> i64 {
+    // Products are within ±2³⁰.
+    let products: [i32; 3] = array::from_fn(|i| axis[i] * i32::from(pose.rotation[i][column].to_bits()));
+    let sum = products.into_iter().fold(0_i32, i32::saturating_add);
+    scaled(sum.clamp(-1 << 30, 1 << 30), pose.scale[column])
+}
+
 fn scaled(value: i32, scale: U10F22) -> i64 {
     // One of 32 bits without sign: its last one goes apart.
     let scale = scale.to_bits();

@@ -40,15 +40,17 @@ pub(crate) struct VertexColors<'p> {
 
 /// Light as it falls on one mesh.
 #[derive(Debug)]
+// In this order, likewise.
+#[repr(C)]
 pub(super) struct Light<'p> {
-    lighting: Lighting<'p>,
     shading: &'static Shading,
+    lighting: Lighting<'p>,
     /// Whether light from behind counts as if it came from in front.
     two_sided: bool,
     is_gray: bool,
 }
 
-/// Lights brought to a mesh in this pose, and whether they are grey.
+/// Brings lights to a mesh in this pose, and says whether they are grey.
 fn bring<'p>(lights: &Lights<'_>, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
     lights.bring(pose, to)
 }
@@ -83,7 +85,7 @@ impl<'p> VertexColors<'p> {
         two_sided: bool,
     ) {
         let light = self.light.insert(Light {
-            lighting: Lighting::DARK,
+            lighting: lights.ambient_alone(),
             shading: &code.shading,
             two_sided,
             is_gray: false,

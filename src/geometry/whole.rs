@@ -51,16 +51,8 @@ impl Placing {
     /// Of no mesh.
     pub(crate) const ZERO: Self = Self { to_clip: ToClip::ZERO, clip: Clip::ZERO };
 
-    /// Inlined, so that nothing is copied.
-    #[inline(always)]
-    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
-        let mut placing = Self::ZERO;
-        placing.set(projection, camera, pose);
-        placing
-    }
-
-    /// Sets one that is [`ZERO`](Self::ZERO), in place.
-    #[inline(always)]
+    /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied.
+    #[inline]
     pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
         self.to_clip.set(projection, camera, pose);
         self.clip = Clip::new(projection, self.to_clip.unit_bits());
@@ -248,7 +240,8 @@ mod tests {
             let pose = pose.at(Vec3::new(stands[0], stands[1], stands[2]));
 
             let projection = camera.projection();
-            let mut placing = Placing::new(projection, camera.placement(), &pose);
+            let mut placing = Placing::ZERO;
+            placing.set(projection, camera.placement(), &pose);
             if !placing.sees(projection, mesh.bounds()) || placing.clip.whole.is_none() {
                 return Ok(());
             }

@@ -13,7 +13,7 @@
 //!
 //! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::{mul_high, normalise, normalised, wide};
+use crate::num::{mul_high, normalise, normalised, wide_inlined};
 
 const INTERVALS: usize = 512;
 
@@ -77,8 +77,8 @@ impl Reciprocal {
         let Self { mantissa, zeros } = Self::coarse_normalised(m, zeros);
         let half_m = (m >> 1) as i32;
         // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹, and y += y·r/2⁶¹.
-        let r = (1 << 61) - wide(half_m, mantissa);
-        let step = (wide(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
+        let r = (1 << 61) - wide_inlined(half_m, mantissa);
+        let step = (wide_inlined(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
         let mantissa = (mantissa as u32).wrapping_add_signed(step as i32).min(i32::MAX as u32);
         Self { mantissa: mantissa as i32, zeros }
     }

@@ -26,7 +26,7 @@ impl Plane {
     }
 
     /// The value at a pixel of a sliver, from the weights of corners 1 and 2, 31 fraction bits.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn weighted(&self, weights: &[u32; 2]) -> u32 {
         let [b, c] = [0, 1].map(|i| mul_round::<31>(weights[i] as i32, self.steps[i]));
         self.origin.wrapping_add_signed(b).wrapping_add_signed(c)

@@ -76,7 +76,10 @@ impl Bend {
     ///
     /// Entry 0 of `across` and `down` is the gradient of corner 1's weight. That is made of the differences of the opposite
     /// edge, 02. Likewise entry 1 has those of edge 01, and the sum of both is edge 12.
-    #[inline]
+    ///
+    /// Not inlined on Armv6-M, where it is long.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     pub(crate) fn new([across, down]: &[[i32; 2]; 2], [q0, q1, q2]: [u32; 3]) -> Option<Self> {
         let (least, most) = (q0.min(q1).min(q2), q0.max(q1).max(q2));
         if most - least >= least >> 2 {

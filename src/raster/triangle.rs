@@ -4,7 +4,7 @@ use super::attribute::Attribute;
 use super::plane::Plane;
 use crate::geometry::{ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, normalise, shift_round, wide};
+use crate::num::{mul_round, normalise, shift_round, wide, wide_inlined};
 
 /// The longest row of a straight triangle, in steps.
 pub(crate) const STRAIGHT: i32 = 31;
@@ -181,7 +181,7 @@ impl TriangleSetup {
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         [(ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px].map(|edge_function| {
             // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
-            let weight = wide(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
+            let weight = wide_inlined(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
             (weight as u32).min(i32::MAX as u32)
         })
     }

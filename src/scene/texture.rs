@@ -27,8 +27,9 @@ use core::fmt;
 pub struct Texture<'a> {
     /// Native-endian RGB565 words.
     texels: &'a [u16],
-    log2_width: u8,
-    log2_height: u8,
+    // Of 16 bits, so that there is no gap behind them, and copies are made word by word.
+    log2_width: u16,
+    log2_height: u16,
     /// For packed coordinates, see the shaders of [`Material`](crate::Material).
     mask: u32,
     multiplier: u32,
@@ -76,8 +77,8 @@ impl<'a> Texture<'a> {
         }
         Ok(Self {
             texels,
-            log2_width: log2_width as u8,
-            log2_height: log2_height as u8,
+            log2_width: log2_width as u16,
+            log2_height: log2_height as u16,
             mask: (0xffff_0000 << (16 - log2_height)) | (((1 << log2_width) - 1) << (16 - log2_width)),
             multiplier: 1 + (1 << (16 - log2_height)),
         })
@@ -142,7 +143,7 @@ impl<'a> Texture<'a> {
     /// The texel of the texture that is seen at whole coordinates if it is turned round at each border, modulo its size.
     #[inline]
     pub(crate) fn mirrored(&self, u: i32, v: i32) -> [i32; 2] {
-        let turned = |at: i32, log2: u8| if at >> log2 & 1 == 0 { at } else { !at };
+        let turned = |at: i32, log2: u16| if at >> log2 & 1 == 0 { at } else { !at };
         [turned(u, self.log2_width), turned(v, self.log2_height)]
     }
 

@@ -12,8 +12,9 @@ use super::packed::shifted;
 use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{mul_high, normalised, wide};
+use crate::num::{IS_ARMV6M, mul_high, normalised, wide};
 use crate::raster::{Attribute, Place};
+use core::hint::black_box;
 
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
 const MOST_GENERAL: u32 = 63;
@@ -25,7 +26,7 @@ impl Perspective<'_> {
         let near = self.near(x, y, steps);
         let way = self.bent_from(&near, steps);
         if self.setup.is_extreme && matches!(way, Way::Table | Way::Chords) {
-            self.set_by_far_end(&near, steps, &way);
+            self.set_by_far_end(&near, steps, way);
         }
         way
     }
@@ -34,33 +35,25 @@ impl Perspective<'_> {
     /// others are still to be set [from both ends](Self::set_by_far_end).
     #[inline(never)]
     pub(super) fn bent_from(&mut self, near: &Place, steps: u32) -> Way {
-        let Some((way, w_step)) = self.start(near, steps) else {
+        let Some((way, (size, down))) = self.start(near, steps) else {
             return Way::None;
         };
-        if self.setup.is_extreme && way != Way::Straight {
-            // Not by slopes.
-        } else if way == Way::Table && self.units.form == Form::Modular {
-            self.set_table(near);
-        } else if steps > 0 {
-            self.set_by_slope(near, self.setup.q_rises, steps, w_step, &way);
-        } else {
+        if steps == 0 {
             self.set_pixel(near, None);
+        } else if !self.setup.is_extreme || way == Way::Straight {
+            let is_table = way == Way::Table && self.units.form == Form::Modular;
+            self.set_lines(steps, way, |attribute, _| {
+                let above = attribute.at(near);
+                let (from_horizon, log2) = from_horizon(attribute, above);
+                let log2 = log2 as i32;
+                if is_table {
+                    (above, from_horizon, log2 - ONE_LOG2 as i32)
+                } else {
+                    (above, mul_high(from_horizon, size << 1), log2 - 1 - down)
+                }
+            });
         }
         way
-    }
-
-    /// In 1/w, from the horizon.
-    #[inline(never)]
-    fn set_table(&mut self, near: &Place) {
-        let all = self.setup.attributes.iter().zip(&mut self.curve.lines).enumerate();
-        for (i, (attribute, line)) in all.take(self.units.count()) {
-            let (above, up) = (attribute.at(near), self.units.up(i));
-            let (from_horizon, log2) = from_horizon(attribute, above);
-            let u = attribute.least.wrapping_add(above);
-            let slope = scaled(from_horizon, log2 as i32 + up as i32 - ONE_LOG2 as i32);
-            let at = (u << up).wrapping_sub(slope << ONE_LOG2) as u32;
-            *line = Linear { at, slope };
-        }
     }
 
     /// A sliver has no planes: its values at both ends come from weights.
@@ -87,7 +80,7 @@ impl Perspective<'_> {
         self.set_ends(&place, Some(&weights), true);
         self.place_in_sliver(x + to_far, &mut place, &mut weights);
         self.set_ends(&place, Some(&weights), false);
-        self.set_by_ends(steps, &way);
+        self.set_by_ends(steps, way);
         way
     }
 
@@ -97,10 +90,11 @@ impl Perspective<'_> {
         let Some(resolve) = self.units.in_sliver else {
             return;
         };
-        for i in 0..self.units.count() {
-            if let Some(attribute) = self.setup.attributes.get(i) {
-                self.set_pixel_of(i, attribute, resolve(self.setup, attribute, x, y));
-            }
+        let setup = self.setup;
+        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count()) {
+            *line = pixel(attribute, resolve(setup, attribute, x, y));
+            // Not unrolled.
+            black_box(());
         }
     }
 
@@ -135,96 +129,55 @@ impl Perspective<'_> {
         }
     }
 
-    /// Sets the line of attribute `i`, of which there are as many as lines.
-    #[inline]
-    fn set_line(&mut self, i: usize, line: Linear) {
-        if let Some(of_attribute) = self.curve.lines.get_mut(i) {
-            *of_attribute = line;
-        }
-    }
-
     /// One pixel, which has weights in a sliver.
     #[inline(never)]
     fn set_pixel(&mut self, place: &Place, weights: Option<&[u32; 2]>) {
-        for i in 0..self.units.count() {
-            if let Some(attribute) = self.setup.attributes.get(i) {
-                self.set_pixel_of(i, attribute, at(attribute, place, weights));
-            }
+        for (attribute, line) in
+            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count())
+        {
+            *line = pixel(attribute, at(attribute, place, weights));
+            black_box(());
         }
     }
 
-    #[inline]
-    fn set_pixel_of(&mut self, i: usize, attribute: &Attribute, above: i32) {
-        let u = attribute.least.wrapping_add(above);
-        self.set_line(i, Linear { at: (u << attribute.scale_log2()) as u32, slope: 0 });
-    }
-
-    /// The forms that take the change over a pixel: all but the table's.
-    #[inline]
-    fn set_by_slope(&mut self, near: &Place, rises: bool, steps: u32, (size, down): (u32, i32), way: &Way) {
-        for (i, attribute) in self.setup.attributes.iter().enumerate().take(self.units.count()) {
-            let above = attribute.at(near);
-            let u = attribute.least.wrapping_add(above);
-            // Over a pixel, away from the near end, times 2^−`log2`.
-            let (from_horizon, log2) = from_horizon(attribute, above);
-            let slope = mul_high(from_horizon, size << 1);
-            let log2 = log2 as i32 - 1 - down;
-            match way {
-                Way::Straight => self.set_straight(i, attribute, above, rises, scaled(slope, log2), steps),
-                Way::Chords => {
-                    let up = self.units.up(i);
-                    let slope = scaled(slope, log2 + up as i32 - CHORD_LOG2 as i32);
-                    self.set_line(i, Linear { at: (u << up) as u32, slope });
-                }
-                _ => self.set_general(i, u, attribute.scale_log2(), slope, log2),
-            }
-        }
-    }
-
-    /// A straight way, from how much more than the least there is at its near end, and the change over a pixel, I16F16.
+    /// The lines of a part. Of each attribute, and what its line holds, `of` says how much more than the least it is at the near end; and
+    /// how it changes in t away from that, or along a straight way over a pixel: as a number and log2 of its unit.
     #[inline(always)]
-    fn set_straight(
-        &mut self,
-        i: usize,
-        attribute: &Attribute,
-        above: i32,
-        rises: bool,
-        slope: i32,
-        steps: u32,
-    ) {
-        let steps = steps as i32;
-        let far = above.wrapping_add(slope.wrapping_mul(steps));
-        let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
-        let (at, step) = attribute.along_inside((first as u32, step), steps, self.setup.inset(i));
-        self.set_line(
-            i,
-            Linear { at: (at << attribute.scale_log2()) as u32, slope: step << attribute.scale_log2() },
-        );
-    }
-
-    /// The general forms. The change over a pixel is `slope` · 2^−`log2`; it is kept as 15 bits and a shift, as t has 16.
-    #[inline(never)]
-    fn set_general(&mut self, i: usize, u: i32, scale_log2: u32, slope: i32, log2: i32) {
-        let log2 = log2 + scale_log2 as i32;
-        let (_, zeros) = normalised(slope.unsigned_abs().max(1));
-        let dropped = 17u32.saturating_sub(zeros) as i32;
-        let down = fraction_bits(self.units.form) as i32 - dropped - log2;
-        let slope = scaled(slope, -dropped);
-        let (slope, down) = match down {
-            ..0 => (slope.checked_shl(down.unsigned_abs()).unwrap_or(0), 0),
-            0..32 => (slope, down as u8),
-            _ => (0, 0),
-        };
-        self.set_line(i, Linear { at: (u << scale_log2) as u32, slope });
-        if let Some(of_line) = self.curve.down.get_mut(i) {
-            *of_line = down;
+    fn set_lines(&mut self, steps: u32, way: Way, of: impl Fn(&Attribute, &Linear) -> (i32, i32, i32)) {
+        let Self { setup, units, curve, .. } = self;
+        let lines = curve.lines.iter_mut().zip(&mut curve.down);
+        for (i, (attribute, (line, line_down))) in
+            setup.attributes.iter().zip(lines).enumerate().take(units.count())
+        {
+            let (above, slope, log2) = of(attribute, line);
+            // Hidden, so that there is one loop for all ways, and not unrolled.
+            let way = if IS_ARMV6M { *black_box(&way) } else { way };
+            if units.form != Form::Modular && way == Way::Table {
+                (*line, *line_down) = general(units.form, attribute, above, slope, log2);
+                continue;
+            }
+            let up = units.up(i) as i32;
+            let slope = scaled(
+                slope,
+                log2 + match way {
+                    Way::Table => up,
+                    Way::Chords => up - CHORD_LOG2 as i32,
+                    _ => 0,
+                },
+            );
+            let u = attribute.least.wrapping_add(above) << up;
+            *line = match way {
+                Way::Table => Linear { at: u.wrapping_sub(slope << ONE_LOG2) as u32, slope },
+                Way::Chords => Linear { at: u as u32, slope },
+                _ => straight(attribute, above, setup.q_rises, slope, (steps, setup.inset(i))),
+            };
         }
     }
 
     /// Where planes may leave the range: slopes come from both ends.
     #[cold]
     #[inline(never)]
-    fn set_by_far_end(&mut self, near: &Place, steps: u32, way: &Way) {
+    fn set_by_far_end(&mut self, near: &Place, steps: u32, way: Way) {
         self.set_ends(near, None, true);
         let x = if self.setup.q_rises { near.x - steps as i32 } else { near.x + steps as i32 };
         let far = self.place(x, near.y);
@@ -250,46 +203,35 @@ impl Perspective<'_> {
     /// From the [values at both ends](Self::set_ends): so that the far one stays in the range, whatever the planes say.
     #[cold]
     #[inline(never)]
-    fn set_by_ends(&mut self, steps: u32, way: &Way) {
-        let rises = self.setup.q_rises;
+    fn set_by_ends(&mut self, steps: u32, way: Way) {
         // w at the far end.
-        let w = if rises {
+        let w = if self.setup.q_rises {
             self.curve.w
         } else {
             self.curve.w.wrapping_add(self.curve.w_step.wrapping_mul(steps))
         };
-        let t = match (way, self.units.form) {
-            (Way::Straight, _) => steps,
-            (Way::Table, Form::Modular) => inverse(w) - (1 << ONE_LOG2),
-            (_, form) => distance(form, w, steps),
+        let (t, unit_log2) = match (way, self.units.form) {
+            (Way::Straight, _) => (steps, 0),
+            (Way::Table, Form::Modular) => (inverse(w) - (1 << ONE_LOG2), 0),
+            (_, form) => (distance(form, w, steps), fraction_bits(form) as i32),
         };
         let t = Reciprocal::coarse(t);
-        for i in 0..self.units.count() {
-            let (Some(attribute), Some(line)) = (self.setup.attributes.get(i), self.curve.lines.get(i))
-            else {
-                return;
-            };
+        let mantissa = t.mantissa_below();
+        self.set_lines(steps, way, |_, line| {
             let (above, above_far) = (line.at as i32, line.slope);
-            let (u, rise) = (attribute.least.wrapping_add(above), above_far - above);
             // rise/t is the product times 2^(zeros − 62). Its upper half, cut towards zero.
-            let product = wide(rise, t.mantissa_below());
-            let quotient = scaled_wide(product, -32);
-            let log2 = t.zeros as i32 - 30;
-            match way {
-                Way::Straight => self.set_straight(i, attribute, above, rises, scaled(quotient, log2), steps),
-                _ if self.units.form != Form::Modular => {
-                    let log2 = log2 + fraction_bits(self.units.form) as i32;
-                    self.set_general(i, u, attribute.scale_log2(), quotient, log2);
-                }
-                _ => {
-                    let up = self.units.up(i);
-                    let slope = scaled_wide(product, t.zeros as i32 - 62 + up as i32);
-                    let one = if matches!(way, Way::Table) { slope << ONE_LOG2 } else { 0 };
-                    self.set_line(i, Linear { at: (u << up).wrapping_sub(one) as u32, slope });
-                }
-            }
-        }
+            let product = wide(above_far - above, mantissa);
+            let size = (product.unsigned_abs() >> 32) as i32;
+            (above, if product < 0 { -size } else { size }, t.zeros as i32 - 30 + unit_log2)
+        });
     }
+}
+
+/// The line of one pixel, from how much more than the least there is.
+#[inline]
+fn pixel(attribute: &Attribute, above: i32) -> Linear {
+    let u = attribute.least.wrapping_add(above);
+    Linear { at: (u << attribute.scale_log2()) as u32, slope: 0 }
 }
 
 /// How much more than the least an attribute is at a pixel: by its planes, or in a sliver by how much corners 1 and 2 count there.
@@ -301,6 +243,41 @@ fn at(attribute: &Attribute, place: &Place, weights: Option<&[u32; 2]>) -> i32 {
             attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
         }
     }
+}
+
+/// A straight way, from how much more than the least there is at its near end, the change over a pixel, I16F16, and what it keeps from the
+/// ends of its range.
+#[inline(never)]
+fn straight(
+    attribute: &Attribute,
+    above: i32,
+    rises: bool,
+    slope: i32,
+    (steps, inset): (u32, u32),
+) -> Linear {
+    let steps = steps as i32;
+    let far = above.wrapping_add(slope.wrapping_mul(steps));
+    let (first, step) = if rises { (far, slope.wrapping_neg()) } else { (above, slope) };
+    let (at, step) = attribute.along_inside((first as u32, step), steps, inset);
+    Linear { at: (at << attribute.scale_log2()) as u32, slope: step << attribute.scale_log2() }
+}
+
+/// A line in the general forms, and how far what it makes is shifted. The change over a pixel is `slope` · 2^`log2`; it is kept as 15
+/// bits and a shift, as t has 16.
+#[inline(never)]
+fn general(form: Form, attribute: &Attribute, above: i32, slope: i32, log2: i32) -> (Linear, u8) {
+    let log2 = log2 + attribute.scale_log2() as i32;
+    let (_, zeros) = normalised(slope.unsigned_abs().max(1));
+    let dropped = 17u32.saturating_sub(zeros) as i32;
+    let down = fraction_bits(form) as i32 - dropped - log2;
+    let slope = scaled(slope, -dropped);
+    let (slope, down) = match down {
+        ..0 => (slope.checked_shl(down.unsigned_abs()).unwrap_or(0), 0),
+        0..32 => (slope, down as u8),
+        _ => (0, 0),
+    };
+    let u = attribute.least.wrapping_add(above);
+    (Linear { at: (u << attribute.scale_log2()) as u32, slope }, down)
 }
 
 /// How a part of so many steps is drawn, over each of which w changes by `w_step`, 32 fraction bits.
@@ -338,15 +315,9 @@ fn from_horizon(attribute: &Attribute, above: i32) -> (i32, u32) {
 }
 
 /// `value` · 2^`log2`, cut towards zero, modulo 2³².
-#[inline(always)]
+#[inline]
 fn scaled(value: i32, log2: i32) -> i32 {
     if log2 >= 0 { value << log2.min(31) } else { shifted(value, (-log2).min(31) as u32) }
-}
-
-/// As [`scaled`], from 64 bits, to the right.
-fn scaled_wide(value: i64, log2: i32) -> i32 {
-    let size = (value.unsigned_abs() >> (-log2).clamp(0, 63)) as i32;
-    if value < 0 { size.wrapping_neg() } else { size }
 }
 
 #[cfg(test)]

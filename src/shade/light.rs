@@ -29,8 +29,9 @@ pub(super) trait FillTexels<F: PixelFormat>: Fill<F::Word> {
 pub(super) struct Light<const M: usize, F, C>(PhantomData<(F, C)>);
 
 impl<const M: usize, F: PixelFormat, C: Channels<M>> Light<M, F, C> {
-    pub(super) fn units(texels: &impl FillTexels<F>) -> Units {
-        let [a, b] = texels.integer_bits();
+    /// For texels whose u and v have these integer bits.
+    #[inline]
+    pub(super) fn units([a, b]: [u32; 2]) -> Units {
         if M == 1 { Units::modular([a, b, 8]) } else { Units::modular([a, b, 8, 8, 8]) }
     }
 

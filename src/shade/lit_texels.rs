@@ -8,7 +8,7 @@ use super::channels::{Channels, lit};
 use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::Light;
-use super::packed::{draw_texels, longest_of};
+use super::packed::{draw_texels, integer_bits, longest_of};
 use super::texels::Texels;
 use super::units::Units;
 use crate::frame::PixelFormat;
@@ -40,7 +40,7 @@ impl<'a, const M: usize, F: PixelFormat, C: Channels<M>> LitTexels<'a, M, F, C> 
 
 impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for LitTexels<'_, M, F, C> {
     fn units(&self) -> Units {
-        Light::<M, F, C>::units(&self.texels())
+        Light::<M, F, C>::units(integer_bits(self.texture))
     }
 
     #[inline(never)]

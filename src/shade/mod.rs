@@ -23,6 +23,7 @@ mod material;
 mod opaque;
 mod packed;
 mod paint;
+mod passes;
 mod patch;
 mod perspective;
 mod pieces;

@@ -50,7 +50,7 @@ use core::hint::black_box;
 pub(super) const NEAR_STEP: u32 = u32::MAX / 176;
 
 /// How a part of a row is drawn. `Table` looks 1/w up at every pixel; in the general forms n/w, which the head calls distances.
-#[derive(PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Way {
     Straight,
     Table,
@@ -247,8 +247,10 @@ impl<'a> Perspective<'a> {
     #[cold]
     #[inline(never)]
     fn level_bending(&mut self, place: &Place, q_step: i32, steps: u32) {
-        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
-        for (i, (attribute, line)) in all.enumerate().take(self.units.count()) {
+        // Slices of a length that is hidden, so that the loop is not unrolled.
+        let (attributes, lines): (&[Attribute], &mut [Linear]) =
+            (black_box(&self.setup.attributes), black_box(&mut self.curve.lines));
+        for (i, (attribute, line)) in attributes.iter().zip(lines).enumerate().take(self.units.count()) {
             level_further(attribute, place, q_step, steps, (i == 1).then(|| self.setup.inset(1)), line);
         }
     }

@@ -19,6 +19,7 @@ use super::inverses::inverse;
 use super::light::{FillTexels, Light};
 use super::loops::Loops;
 use super::packed::integer_bits;
+use super::passes::leave_apart;
 use super::texels::Texels;
 use super::units::{Form, Units};
 use crate::frame::PixelFormat;
@@ -231,8 +232,8 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
                     black_box(());
                 }
             }
-            Way::Table => Loops::each::<F, false>(pixels, curve, [u, v], texel),
-            Way::Chords => Loops::each::<F, true>(pixels, curve, [u, v], texel),
+            Way::Table => Loops::each::<F, false>(pixels, curve, [u, v], leave_apart::<false, F>, texel),
+            Way::Chords => Loops::each::<F, true>(pixels, curve, [u, v], leave_apart::<true, F>, texel),
         }
     }
 }
@@ -292,7 +293,7 @@ impl<const M: usize, F: PixelFormat, B: Border, C: Channels<M>> Fill<F::Word>
     for LitBordered<'_, M, F, B, C>
 {
     fn units(&self) -> Units {
-        Light::<M, F, C>::units(&self.0)
+        Light::<M, F, C>::units(self.0.integer_bits())
     }
 
     #[inline(never)]

@@ -97,8 +97,8 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::curve::Linear;
-    use super::super::loops::{at_once, in_passes};
     use super::super::packed::lines_of;
+    use super::super::passes::{at_once, leave_apart, second_pass};
     use super::*;
     use crate::frame::BigEndian;
     use embedded_graphics::pixelcolor::Rgb565;
@@ -136,7 +136,8 @@ pub(super) mod tests {
             F::rgb565(texture.fetch_repeat((u.value(t) >> u_down) as i32, (v.value(t) >> v_down) as i32))
         };
         let (mut passes, mut once) = (vec![1; count], vec![2; count]);
-        in_passes::<false, F>(&mut passes, curve, word);
+        leave_apart::<false, F>(&mut passes, curve);
+        second_pass::<F>(&mut passes, word);
         at_once::<false, F>(&mut once, curve, word);
         [passes, once]
     }

@@ -57,7 +57,8 @@ pub(crate) fn record(
 ) -> Result<bool, CapacityError> {
     stats.count(|stats| &mut stats.meshes);
     let window = Window::LARGEST.within(&projection.viewport);
-    let mut placing = Placing::new(projection, camera, pose);
+    let mut placing = Placing::ZERO;
+    placing.set(projection, camera, pose);
     if window.is_empty() || !placing.sees(projection, mesh.bounds()) {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return Ok(true);

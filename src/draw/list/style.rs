@@ -23,7 +23,8 @@ impl<'p> Style<'p> {
         lights: Option<&Lights<'_>>,
     ) -> Self {
         let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
-        let coloring = surface.coloring.colors(lights, pose);
+        let mut coloring = surface.coloring.unlit();
+        surface.coloring.light(&mut coloring, lights, pose);
         Self { cull, inputs: surface.look.traits.inputs(), coloring }
     }
 

@@ -8,12 +8,12 @@
 //! surface: there each normal and place that is lit is brought to where it stands ([`stretch`](super::stretch)).
 
 use super::normal::{Normal, across_face, facing};
-use super::point::{LocalPoint, position_in_axes};
+use super::point::{LocalPoint, POINT, PointAt, PointCode};
 use super::stretch::Stretch;
 use crate::math::{Pose, Vec3, dot, normalized};
 use crate::num::{I2F14, I4F12, I16F16, U8F8};
 use crate::scene::{Vertex, is_gray};
-use core::{array, fmt};
+use core::{array, fmt, hint::black_box};
 
 const MAX: usize = 4;
 
@@ -32,6 +32,7 @@ enum Source {
     Point {
         position: Vec3,
         range: I16F16,
+        code: &'static PointCode,
     },
 }
 
@@ -53,7 +54,7 @@ impl Light {
     /// the light itself is gets none.
     #[must_use]
     pub const fn point(position: Vec3, color: [u8; 3], range: I16F16) -> Self {
-        Self { source: Source::Point { position, range }, color }
+        Self { source: Source::Point { position, range, code: POINT }, color }
     }
 }
 
@@ -124,39 +125,49 @@ impl<'a> Lights<'a> {
     #[must_use]
     #[inline]
     pub fn in_mesh_space<'p>(&self, pose: &'p Pose) -> Lighting<'p> {
-        let mut lighting = Lighting::DARK;
+        let mut lighting = self.ambient_alone();
         self.bring(pose, &mut lighting);
         lighting
     }
 
-    /// As [`Lights::in_mesh_space`], in place, so that nothing is copied; from a `lighting` that is [dark](Lighting::DARK). Whether all
-    /// lights are grey.
+    /// The ambient light around a mesh whose pose keeps angles.
+    #[inline]
+    pub(crate) fn ambient_alone<'p>(&self) -> Lighting<'p> {
+        Lighting {
+            count: 0,
+            ambient: self.ambient,
+            lights: [Local::NONE; MAX],
+            stretch: None,
+            point_at: |_, _, _, _, _| 0,
+        }
+    }
+
+    /// As [`Lights::in_mesh_space`], to [ambient light alone](Self::ambient_alone). Returns whether all lights are grey.
     #[inline(never)]
-    pub(crate) fn bring<'p>(&self, pose: &'p Pose, lighting: &mut Lighting<'p>) -> bool {
-        lighting.ambient = self.ambient;
+    pub(crate) fn bring<'p>(&self, pose: &'p Pose, to: &mut Lighting<'p>) -> bool {
         let mut are_gray = is_gray(self.ambient);
-        lighting.stretch = Stretch::of(pose);
-        let (axes, unit) = match &lighting.stretch {
-            None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
-            Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
-        };
+        to.stretch = Stretch::of(pose);
+        let stretch = to.stretch.as_ref();
         for &Light { source, color } in self.lights {
             are_gray &= is_gray(color);
             // There is room: `try_new` counted.
-            let Some(to) = lighting.lights.get_mut(usize::from(lighting.count)) else {
+            let Some(place) = to.lights.get_mut(usize::from(to.count)) else {
                 break;
             };
-            *to = match source {
+            match source {
                 Source::Directional(towards) => {
-                    Local::Directional { towards: turned_back(axes, towards), color }
+                    let axes = stretch.map_or(&pose.rotation, Stretch::axes);
+                    *place = Local::Directional { towards: turned_back(axes, towards), color };
                 }
-                Source::Point { position, range } if range > 0 => {
-                    let place = position_in_axes(axes, pose.translation, position);
-                    Local::Point(LocalPoint::new(place, unit, range, color))
+                Source::Point { position, range, code } => {
+                    let Some(point) = (code.bring)(pose, stretch, (position, range), color) else {
+                        continue;
+                    };
+                    to.point_at = code.at;
+                    *place = Local::Point(point);
                 }
-                Source::Point { .. } => continue,
-            };
-            lighting.count += 1;
+            }
+            to.count += 1;
         }
         are_gray
     }
@@ -192,16 +203,20 @@ impl core::error::Error for LightsError {}
 /// assert_eq!(lit(floor.normal(0.0, -1.0, 0.0)), 50); // a ceiling: ambient light alone
 /// ```
 #[derive(Clone, Debug)]
+// In this order, so that what a vertex in one light reads lies where short instructions reach.
+#[repr(C)]
 pub struct Lighting<'p> {
-    lights: [Local; MAX],
-    /// How many of them there are.
+    /// How many lights there are, beside the ambient one.
     count: u8,
     ambient: [u8; 3],
+    lights: [Local; MAX],
     /// If the pose does not keep angles.
     stretch: Option<Stretch<'p>>,
+    /// What computes the light of a point light.
+    point_at: PointAt,
 }
 
-const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 2 * size_of::<usize>());
+const _: () = assert!(size_of::<Lighting<'_>>() <= 88 + 3 * size_of::<usize>());
 
 #[derive(Clone, Copy, Debug)]
 enum Local {
@@ -219,10 +234,6 @@ impl Local {
 }
 
 impl Lighting<'_> {
-    /// No light.
-    pub(crate) const DARK: Self =
-        Self { lights: [Local::NONE; MAX], count: 0, ambient: [0; 3], stretch: None };
-
     /// The light that arrives at a place that faces the direction of `normal`: ambient + Σ max(0, n·l) ·
     /// colour · attenuation, limited to 255.0; `two_sided`: |n·l|.
     ///
@@ -252,6 +263,8 @@ impl Lighting<'_> {
     fn arriving(&self, position: [I4F12; 3], normal: Normal, two_sided: bool) -> [U8F8; 3] {
         let mut sum = self.ambient.map(|channel| u32::from(channel) << 14);
         for light in self.lights() {
+            // Hidden, so that there is one loop, not one for each.
+            let two_sided = black_box(two_sided);
             let (cosine, color) = match light {
                 Local::Directional { towards, color } => {
                     let cosine = facing(normal.dot(towards.map(i32::from)), two_sided);
@@ -260,7 +273,8 @@ impl Lighting<'_> {
                     (cosine - (cosine >> 7), color)
                 }
                 Local::Point(light) => {
-                    (light.at(self.stretch.as_ref(), position, normal, two_sided), &light.color)
+                    let stretch = self.stretch.as_ref();
+                    ((self.point_at)(light, stretch, position, normal, two_sided), &light.color)
                 }
             };
             for (sum, &channel) in sum.iter_mut().zip(color) {

@@ -2,10 +2,47 @@
 
 use super::normal::{Direction, Normal, facing, magnitude64};
 use super::stretch::Stretch;
-use crate::math::Vec3;
 use crate::math::recip::Reciprocal;
+use crate::math::{Pose, Vec3};
 use crate::num::{I2F14, I4F12, I16F16, wide};
 use core::{array, num::NonZeroU16};
+
+/// The functions of point lights. A light that is one refers to them: so only programs that make one link them.
+#[derive(Debug)]
+pub(super) struct PointCode {
+    /// Brings one to a mesh that stands as a pose says, and may be stretched: from its place and range, and its colour. `None` if its
+    /// light reaches nothing.
+    pub(super) bring: fn(&Pose, Option<&Stretch<'_>>, (Vec3, I16F16), [u8; 3]) -> Option<LocalPoint>,
+    pub(super) at: PointAt,
+}
+
+/// [`LocalPoint::at`].
+pub(super) type PointAt = fn(&LocalPoint, Option<&Stretch<'_>>, [I4F12; 3], Normal, bool) -> u32;
+
+pub(super) const POINT: &PointCode = &PointCode { bring, at: LocalPoint::at };
+
+/// There is but one.
+impl PartialEq for PointCode {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for PointCode {}
+
+fn bring(
+    pose: &Pose,
+    stretch: Option<&Stretch<'_>>,
+    (position, range): (Vec3, I16F16),
+    color: [u8; 3],
+) -> Option<LocalPoint> {
+    let (axes, unit) = match stretch {
+        None => (&pose.rotation, (pose.scale[0].to_bits().max(1), 0)),
+        Some(stretch) => (stretch.axes(), (1 << 22, stretch.unit_log2())),
+    };
+    (range > 0)
+        .then(|| LocalPoint::new(position_in_axes(axes, pose.translation, position), unit, range, color))
+}
 
 /// A point light in mesh space, or around a stretched mesh in the axes of the world.
 #[derive(Clone, Copy, Debug)]
@@ -24,12 +61,7 @@ impl LocalPoint {
     /// At a place in units of the world (27 fraction bits, below 2⁴⁷); its own unit is `scale` (22 fraction bits, not 0) times
     /// 2^`log2` of these (−19 … 12).
     #[inline(never)]
-    pub(super) fn new(
-        from_origin: [i64; 3],
-        (scale, log2): (u32, i32),
-        range: I16F16,
-        color: [u8; 3],
-    ) -> Self {
+    fn new(from_origin: [i64; 3], (scale, log2): (u32, i32), range: I16F16, color: [u8; 3]) -> Self {
         let range = range.to_bits().unsigned_abs();
         // Of 29 bits, over the unit: position = numerator · 2^(excess − 27) · 2²² / scale / 2^log2.
         let excess = 64 - magnitude64(from_origin).leading_zeros() as i32 - 29;
@@ -59,8 +91,7 @@ impl LocalPoint {
     }
 
     /// The cosine that counts times the attenuation, 14 fraction bits.
-    #[inline(never)]
-    pub(super) fn at(
+    fn at(
         &self,
         stretch: Option<&Stretch<'_>>,
         position: [I4F12; 3],
@@ -100,7 +131,7 @@ impl LocalPoint {
 /// The transpose of a rotation of 14 fraction bits is its inverse only to 2⁻¹³, which would show on a
 /// surface close to the light. One step of refinement, x += Rᵀ(p − R·x), squares that.
 #[inline(never)]
-pub(super) fn position_in_axes(axes: &[[I2F14; 3]; 3], origin: Vec3, position: Vec3) -> [i64; 3] {
+fn position_in_axes(axes: &[[I2F14; 3]; 3], origin: Vec3, position: Vec3) -> [i64; 3] {
     let rotation = |row: usize, column: usize| i64::from(axes[row][column].to_bits());
     let turned_back = |v: [i64; 3], column: usize| {
         rotation(0, column) * v[0] + rotation(1, column) * v[1] + rotation(2, column) * v[2]

@@ -14,7 +14,7 @@
 
 use super::normal::{Direction, Normal, magnitude};
 use crate::math::{Pose, dot};
-use crate::num::{I2F14, I4F12, wide};
+use crate::num::{I2F14, I4F12, leading_zeros, wide};
 use core::array;
 
 /// A pose that does not keep angles.
@@ -36,10 +36,10 @@ impl<'p> Stretch<'p> {
         }
         let scales = pose.scale.map(|scale| u64::from(scale.to_bits()));
         let products: [u64; 3] = array::from_fn(|i| scales[(i + 1) % 3] * scales[(i + 2) % 3]);
-        let zeros = products.iter().fold(1, |all, product| all | product).leading_zeros();
+        let zeros = leading_zeros(products.iter().fold(1, |all, product| all | product));
         let mut stretch = Self { pose, factors: [0; 3], shifts: u16::from(!pose.is_orthonormal()) << 15 };
         for (i, product) in products.into_iter().enumerate() {
-            let own = product.leading_zeros();
+            let own = leading_zeros(product);
             stretch.factors[i] = (product << (own & 63) >> 48) as u16;
             stretch.shifts |= ((own - zeros).min(31) as u16) << (5 * i);
         }

@@ -64,7 +64,7 @@ fn exact(lights: &Lights<'_>, pose: &Pose, position: [I4F12; 3], normal: V, two_
     for light in lights.lights {
         let (to_light, attenuation) = match light.source {
             Source::Directional(towards) => (towards.map(|bits| f64::from(bits) / f64::from(1 << 30)), 1.0),
-            Source::Point { position, range } => {
+            Source::Point { position, range, .. } => {
                 let to_light = minus(world(position), place);
                 let ratio = dot(to_light, to_light) / f64::from(range).powi(2);
                 (unit(to_light), if ratio < 1.0 { (1.0 - ratio).powi(2) } else { 0.0 })
