@@ -191,10 +191,10 @@ impl Clip {
         } else {
             // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
-            let divisor = if self.flat != 0 { 1 << self.flat } else { w };
+            let divisor = if self.flat() != 0 { 1 << self.flat() } else { w };
             for (axis, at) in [(0, x), (1, y)] {
                 let center = wide(divisor, self.center[axis] >> FINER);
-                polygon.set(i, axis, ((i64::from(at) << self.scale) + center) >> (COARSER - FINE));
+                polygon.set(i, axis, ((i64::from(at) << self.scale()) + center) >> (COARSER - FINE));
             }
             polygon.set(i, 2, i64::from(w) << FINE);
             may_be_inside = w >= self.least;
@@ -224,7 +224,7 @@ impl Clip {
         let mut at = to_clip.place_fine(vertex.position, axis);
         if let Some(center) = self.center.get(axis) {
             let center = mul_long(self.divisor_of(polygon, i), (center >> FINER) << COARSER);
-            at = ((at << 2) >> (2 + COARSER - self.scale)) + center;
+            at = ((at << 2) >> (2 + COARSER - self.scale())) + center;
         }
         polygon.set(i, axis, at);
     }
@@ -238,7 +238,7 @@ impl Clip {
         }
         // All coordinates are shortened alike, so that the largest has 30 bits and a sign. Without perspective w does not
         // divide: it keeps its own unit.
-        let is_flat = self.flat != 0;
+        let is_flat = self.flat() != 0;
         let [x, y, w] = [0, 1, 2].map(|axis| (polygon.at(i, axis) >> 32) as i32);
         let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
         let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
@@ -258,7 +258,7 @@ impl Clip {
     /// What x and y are divided by, in finer clip units: w, or 1 without perspective.
     #[inline(always)]
     fn divisor_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
-        if self.flat != 0 { 1 << (self.flat + FINE) } else { polygon.at(i, 2) }
+        if self.flat() != 0 { 1 << (self.flat() + FINE) } else { polygon.at(i, 2) }
     }
 
     /// How far inside a side a corner lies, as a linear function in clip space: negative outside, within ±2⁴⁷. Sides are
