@@ -95,7 +95,8 @@ impl Polygon<'_> {
 
     /// Sets a coordinate of corner `to` between those of `a` (where `t` is 0) and `b` (1).
     #[inline(never)]
-    fn mix(&mut self, axis: usize, [a, b, to]: [usize; 3], t: &Ratio) {
+    fn mix(&mut self, axis: usize, corners: [u8; 3], t: &Ratio) {
+        let [a, b, to] = corners.map(usize::from);
         self.set(to, axis, t.between(self.at(a, axis), self.at(b, axis)));
     }
 
@@ -165,8 +166,8 @@ impl Clip {
                 // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
                 // most: there is room for one per plane.
                 let last = polygon.count - 1;
-                self.cross(&mut polygon, [0, last, stay + 1], side);
-                self.cross(&mut polygon, [stay - 1, stay, stay], side);
+                self.cross(&mut polygon, [0, last as u8, stay as u8 + 1], side);
+                self.cross(&mut polygon, [stay as u8 - 1, stay as u8, stay as u8], side);
                 polygon.count = stay + 2;
             }
             side += 1;
@@ -334,16 +335,17 @@ impl Clip {
 
     /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.
     #[inline(never)]
-    fn cross(&self, polygon: &mut Polygon<'_>, [inside, outside, to]: [usize; 3], side: usize) {
+    fn cross(&self, polygon: &mut Polygon<'_>, corners: [u8; 3], side: usize) {
+        let [inside, outside, to] = corners.map(usize::from);
         // Rounded, one that counts as inside may lie a little outside.
         let before = self.distance(polygon, inside, side).max(0);
         let t = Ratio::new(before, -self.distance(polygon, outside, side), self.is_fine);
         for axis in 0..2 {
-            polygon.mix(axis, [inside, outside, to], &t);
+            polygon.mix(axis, corners, &t);
         }
         match polygon.planes.get(side) {
             Some(&w) => polygon.set(to, 2, w),
-            None => polygon.mix(2, [inside, outside, to], &t),
+            None => polygon.mix(2, corners, &t),
         }
         let vertices = &mut *polygon.vertices;
         let attributes = |i: usize| vertices.get(i).map(|vertex| (vertex.u, vertex.v, vertex.color));
