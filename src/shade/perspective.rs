@@ -286,17 +286,16 @@ impl<'a> Perspective<'a> {
     /// Sets lines in 1/w.
     #[inline(always)]
     fn set_tables(&mut self, near: &Place) {
-        let setup = self.setup;
         // Two without a loop, which would take as long as what is in it.
-        let (units, lines) = (&self.units, &mut self.curve.lines);
-        set_table(&setup.attributes[0], near, units.up(0), &mut lines[0]);
+        let (attributes, units, lines) = (&self.setup.attributes, &self.units, &mut self.curve.lines);
+        set_table(&attributes[0], near, units.up(0), &mut lines[0]);
         let count = units.count();
         if count > 1 {
-            set_table(&setup.attributes[1], near, units.up(1), &mut lines[1]);
+            set_table(&attributes[1], near, units.up(1), &mut lines[1]);
         }
         if count > 2 {
             for i in 2..count.min(ATTRIBUTES) {
-                set_table_further(&setup.attributes[i], near, units.up(i), &mut lines[i]);
+                set_table_further(&attributes[i], near, units.up(i), &mut lines[i]);
             }
         }
     }
