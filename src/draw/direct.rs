@@ -17,7 +17,9 @@
 //! screen the target is, so a part of a picture that is drawn anew fits the rest.
 
 use crate::frame::{NoDepth, PixelFormat, Window};
-use crate::geometry::{Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, VertexColors, piece, position};
+use crate::geometry::{
+    Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, VertexColors, piece, position, set_attributes,
+};
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Prepared, Rows, Runs, Span, WIDEST};
@@ -383,7 +385,7 @@ impl Posed {
     #[inline(never)]
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
-        VertexColors::default().of_corners(triangle.each_ref(), to);
+        set_attributes(triangle.each_ref(), &VertexColors::default(), to);
         self.placing
             .clipping()
             .map_or((0, false), |(to_clip, clip)| clip.cut(to_clip, triangle.each_ref(), to))

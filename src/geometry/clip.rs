@@ -48,14 +48,14 @@ pub(crate) struct Clip {
     /// Perspective: near as a mantissa of 31 bits; orthographic: 1/(far − near) as such.
     pub(super) depth_mantissa: i32,
     /// Perspective: the leading zeros of near in clip units; orthographic: those of far − near, less one.
-    pub(super) depth_zeros: i32,
+    depth_zeros: i8,
     /// Screen = centre + x/w · 2^`scale` in 1/16 px.
-    pub(super) scale: i32,
+    scale: i8,
     /// The vanishing point, in 1/16 px with [`FINER`] bits more, plus a half, so that what is added to it is rounded to
     /// nearest.
     pub(super) center: [i32; 2],
     /// The fraction bits of clip coordinates if w does not divide, else 0.
-    pub(super) flat: i32,
+    flat: i8,
 }
 
 /// How far products with 1/w are shifted where a mesh is whole, for a w without leading zeros.
@@ -122,10 +122,10 @@ impl Clip {
             whole: None,
             planes: [projection.near, projection.far],
             depth_mantissa,
-            depth_zeros,
-            scale: focal_log2(projection.focal) + 4,
+            depth_zeros: depth_zeros as i8,
+            scale: (focal_log2(projection.focal) + 4) as i8,
             center: projection.center.map(|at| (at << FINER) + (1 << (FINER - 1))),
-            flat: if projection.orthographic { unit_bits } else { 0 },
+            flat: if projection.orthographic { unit_bits as i8 } else { 0 },
         }
     }
 
@@ -139,10 +139,28 @@ impl Clip {
         (i64::from(plane.to_bits()) << (to_clip.unit_bits() + FINE - 16)).min(1 << 46)
     }
 
+    /// Screen = centre + x/w · 2^this in 1/16 px.
+    #[inline(always)]
+    pub(super) fn scale(&self) -> i32 {
+        self.scale.into()
+    }
+
+    /// The fraction bits of clip coordinates if w does not divide, else 0.
+    #[inline(always)]
+    pub(super) fn flat(&self) -> i32 {
+        self.flat.into()
+    }
+
+    /// Perspective: the leading zeros of near in clip units; orthographic: those of far − near, less one.
+    #[inline(always)]
+    pub(super) fn depth_zeros(&self) -> i32 {
+        self.depth_zeros.into()
+    }
+
     /// What x and y are divided by, in clip units.
     #[inline]
     pub(super) fn divisor(&self, w: i32) -> i32 {
-        if self.flat != 0 { 1 << self.flat } else { w }
+        if self.flat() != 0 { 1 << self.flat() } else { w }
     }
 
     /// The middle of a mesh's bounds in clip space, if anything within these may be seen through the viewport, between the planes.
@@ -187,8 +205,8 @@ impl Clip {
         radius: u32,
         (axis, sign, slope): (usize, i64, i32),
     ) -> bool {
-        let outside = ((i64::from(across) << self.scale) - wide(self.divisor(w), slope)) * sign;
-        to_clip.reaches(outside, radius, (axis, self.scale, if self.flat != 0 { 0 } else { slope }))
+        let outside = ((i64::from(across) << self.scale()) - wide(self.divisor(w), slope)) * sign;
+        to_clip.reaches(outside, radius, (axis, self.scale(), if self.flat() != 0 { 0 } else { slope }))
     }
 
     /// Puts a vertex that clipping has nothing to do with on the screen, its position and q alone; false, and `to` of no use, for
@@ -215,7 +233,7 @@ impl Clip {
             && self.project(
                 |axis| to_clip.place(position, axis),
                 w,
-                [0, self.scale],
+                [0, self.scale()],
                 &self.center,
                 within,
                 place,
@@ -237,16 +255,16 @@ impl Clip {
         (to_x, to_y, to_q): (&mut I12F4, &mut I12F4, &mut U1F31),
     ) -> bool {
         let inverse;
-        let q = if self.flat != 0 {
-            inverse = Inverse { mantissa: 1 << 31, zeros: 31 - self.flat - finer };
+        let q = if self.flat() != 0 {
+            inverse = Inverse { mantissa: 1 << 31, zeros: 31 - self.flat() - finer };
             // Both of 31 bits.
-            let depth = (self.far - w) << self.depth_zeros;
+            let depth = (self.far - w) << self.depth_zeros();
             (mul_round::<30>(depth, self.depth_mantissa) as u32).clamp(1, i32::MAX as u32)
         } else {
             inverse = Inverse::of(w);
             // 2³⁰ … 2³², of which the upper bits are q: all but as many as w has more than near.
             let quotient = (mul_high_short(self.depth_mantissa, inverse.mantissa) as u32) << 2;
-            match (self.depth_zeros - finer - inverse.zeros) as u32 {
+            match (self.depth_zeros() - finer - inverse.zeros) as u32 {
                 0 => quotient.min(i32::MAX as u32),
                 shift => ((quotient >> (shift - 1).min(30)) + 1) >> 1,
             }

@@ -95,7 +95,8 @@ impl Polygon<'_> {
 
     /// Sets a coordinate of corner `to` between those of `a` (where `t` is 0) and `b` (1).
     #[inline(never)]
-    fn mix(&mut self, axis: usize, [a, b, to]: [usize; 3], t: &Ratio) {
+    fn mix(&mut self, axis: usize, corners: [u8; 3], t: &Ratio) {
+        let [a, b, to] = corners.map(usize::from);
         self.set(to, axis, t.between(self.at(a, axis), self.at(b, axis)));
     }
 
@@ -165,8 +166,8 @@ impl Clip {
                 // Now 0 .. stay are inside, and stay .. count outside. These give way to two new vertices, one more than they are at
                 // most: there is room for one per plane.
                 let last = polygon.count - 1;
-                self.cross(&mut polygon, [0, last, stay + 1], side);
-                self.cross(&mut polygon, [stay - 1, stay, stay], side);
+                self.cross(&mut polygon, [0, last as u8, stay as u8 + 1], side);
+                self.cross(&mut polygon, [stay as u8 - 1, stay as u8, stay as u8], side);
                 polygon.count = stay + 2;
             }
             (outside, side) = (outside >> 1, side + 1);
@@ -192,10 +193,10 @@ impl Clip {
         } else {
             // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
-            let divisor = if self.flat != 0 { 1 << self.flat } else { w };
+            let divisor = if self.flat() != 0 { 1 << self.flat() } else { w };
             for (axis, at) in [(0, x), (1, y)] {
                 let center = wide(divisor, self.center[axis] >> FINER);
-                polygon.set(i, axis, ((i64::from(at) << self.scale) + center) >> (COARSER - FINE));
+                polygon.set(i, axis, ((i64::from(at) << self.scale()) + center) >> (COARSER - FINE));
             }
             polygon.set(i, 2, i64::from(w) << FINE);
             may_be_inside = w >= self.least;
@@ -227,7 +228,7 @@ impl Clip {
         let mut at = to_clip.place_fine(vertex.position, axis);
         if let Some(center) = self.center.get(axis) {
             let center = mul_long(self.divisor_of(polygon, i), (center >> FINER) << COARSER);
-            at = ((at << 2) >> (2 + COARSER - self.scale)) + center;
+            at = ((at << 2) >> (2 + COARSER - self.scale())) + center;
         }
         polygon.set(i, axis, at);
     }
@@ -241,7 +242,7 @@ impl Clip {
         }
         // All coordinates are shortened alike, so that the largest has 30 bits and a sign. Without perspective w does not
         // divide: it keeps its own unit.
-        let is_flat = self.flat != 0;
+        let is_flat = self.flat() != 0;
         let [x, y, w] = [0, 1, 2].map(|axis| (polygon.at(i, axis) >> 32) as i32);
         let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
         let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
@@ -261,7 +262,7 @@ impl Clip {
     /// What x and y are divided by, in finer clip units: w, or 1 without perspective.
     #[inline(always)]
     fn divisor_of(&self, polygon: &Polygon<'_>, i: usize) -> i64 {
-        if self.flat != 0 { 1 << (self.flat + FINE) } else { polygon.at(i, 2) }
+        if self.flat() != 0 { 1 << (self.flat() + FINE) } else { polygon.at(i, 2) }
     }
 
     /// How far inside a side a corner lies, as a linear function in clip space: negative outside, within ±2⁴⁷. Sides are
@@ -337,16 +338,17 @@ impl Clip {
 
     /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.
     #[inline(never)]
-    fn cross(&self, polygon: &mut Polygon<'_>, [inside, outside, to]: [usize; 3], side: usize) {
+    fn cross(&self, polygon: &mut Polygon<'_>, corners: [u8; 3], side: usize) {
+        let [inside, outside, to] = corners.map(usize::from);
         // Rounded, one that counts as inside may lie a little outside.
         let before = self.distance(polygon, inside, side).max(0);
         let t = Ratio::new(before, -self.distance(polygon, outside, side), self.is_fine);
         for axis in 0..2 {
-            polygon.mix(axis, [inside, outside, to], &t);
+            polygon.mix(axis, corners, &t);
         }
         match polygon.planes.get(side) {
             Some(&w) => polygon.set(to, 2, w),
-            None => polygon.mix(2, [inside, outside, to], &t),
+            None => polygon.mix(2, corners, &t),
         }
         let vertices = &mut *polygon.vertices;
         let attributes = |i: usize| vertices.get(i).map(|vertex| (vertex.u, vertex.v, vertex.color));

@@ -22,6 +22,7 @@ pub(crate) use fan::piece;
 pub(crate) use fan::tests::polygon;
 pub use orient::Cull;
 pub(crate) use orient::{Oriented, area, clockwise, position};
+pub(crate) use screen::set_attributes;
 pub use screen::{Inputs, RangeError, ScreenVertex};
 pub(crate) use stats::Count;
 pub use stats::Stats;

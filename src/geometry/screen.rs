@@ -70,6 +70,20 @@ impl ScreenVertex {
     }
 }
 
+/// Sets the attributes of a triangle's corners, before it is cut.
+#[cold]
+pub(crate) fn set_attributes(corners: [&Vertex; 3], coloring: &VertexColors<'_>, to: &mut [ScreenVertex]) {
+    for (vertex, to) in corners.into_iter().zip(to) {
+        set_attributes_of(vertex, coloring, to);
+    }
+}
+
+/// Not inlined, as loops of three are unrolled.
+#[inline(never)]
+fn set_attributes_of(vertex: &Vertex, coloring: &VertexColors<'_>, to: &mut ScreenVertex) {
+    to.set_attributes(vertex, coloring);
+}
+
 /// Which attributes of the vertices a shader reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inputs {

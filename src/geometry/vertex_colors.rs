@@ -7,7 +7,6 @@
 //! Light is computed per vertex (smooth shading) or per triangle (flat shading). With flat shading a vertex's colour comes out
 //! unlit. The caller multiplies it by the light on the face, anew for each face that the vertex belongs to.
 
-use super::screen::ScreenVertex;
 use crate::math::Pose;
 use crate::num::U8F8;
 use crate::scene::{Lighting, Lights, Vertex};
@@ -109,20 +108,6 @@ impl<'p> VertexColors<'p> {
             }
             _ => *to = color.map(U8F8::from_num),
         }
-    }
-
-    /// Sets the attributes of a triangle's corners, before it is cut.
-    #[cold]
-    pub(crate) fn of_corners(&self, corners: [&Vertex; 3], to: &mut [ScreenVertex]) {
-        for (vertex, to) in corners.into_iter().zip(to) {
-            self.of_corner(vertex, to);
-        }
-    }
-
-    /// Not inlined, as loops of three are unrolled.
-    #[inline(never)]
-    fn of_corner(&self, vertex: &Vertex, to: &mut ScreenVertex) {
-        to.set_attributes(vertex, self);
     }
 
     /// Whether shading is flat: colours are still to be multiplied by the light [on their face](VertexColors::on_face).

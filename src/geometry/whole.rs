@@ -78,7 +78,7 @@ impl Placing {
     #[inline(never)]
     fn narrow(&mut self, bounds: &Bounds, center: [i32; 3]) {
         let Self { to_clip, clip } = self;
-        if clip.flat != 0 {
+        if clip.flat() != 0 {
             return;
         }
         let radius = bounds.radius.unsigned_abs();
@@ -97,8 +97,8 @@ impl Placing {
         // Of the nearest vertex.
         let (w, zeros) = normalised((nearest as u32) << bits_of_w);
         let inverse = looked_up(w);
-        let shift = 18 + bits as i32 - bits_of_w as i32 - clip.scale;
-        let depth_shift = clip.depth_zeros - 2 - bits_of_w as i32;
+        let shift = 18 + bits as i32 - bits_of_w as i32 - clip.scale();
+        let depth_shift = clip.depth_zeros() - 2 - bits_of_w as i32;
         let fits = |shift: i32| (zeros as i32..30).contains(&shift);
         if zeros > MOST_ZEROS || !fits(shift) || !fits(depth_shift) {
             return;

@@ -133,7 +133,7 @@ impl TriangleSetup {
                 return false;
             };
             slopes.set_plane(&mut attribute.plane, rise);
-            if !self.straight && !(self.sliver && needs.every_pixel) {
+            if !(self.straight || self.sliver && needs.every_pixel) {
                 attribute.set_horizon(self.q_rises, self.q_step_zeros.into(), reciprocal);
             }
             true

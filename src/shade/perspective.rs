@@ -270,19 +270,36 @@ impl<'a> Perspective<'a> {
             return self.bent_from(&near, steps);
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
+        // On a Cortex-M4 it is faster inlined, by 3 % in long rows.
+        if IS_ARMV6M {
+            self.set_tables_apart(&near);
+        } else {
+            self.set_tables(&near);
+        }
+        Way::Table
+    }
+
+    /// Not inlined: it would be on the stack together with `bent_from`.
+    #[inline(never)]
+    fn set_tables_apart(&mut self, near: &Place) {
+        self.set_tables(near);
+    }
+
+    /// Sets lines in 1/w.
+    #[inline(always)]
+    fn set_tables(&mut self, near: &Place) {
         // Two without a loop, which would take as long as what is in it.
-        let (units, lines) = (&self.units, &mut self.curve.lines);
-        set_table(&setup.attributes[0], &near, units.up(0), &mut lines[0]);
+        let (attributes, units, lines) = (&self.setup.attributes, &self.units, &mut self.curve.lines);
+        set_table(&attributes[0], near, units.up(0), &mut lines[0]);
         let count = units.count();
         if count > 1 {
-            set_table(&setup.attributes[1], &near, units.up(1), &mut lines[1]);
+            set_table(&attributes[1], near, units.up(1), &mut lines[1]);
         }
         if count > 2 {
             for i in 2..count.min(ATTRIBUTES) {
-                set_table_further(&setup.attributes[i], &near, units.up(i), &mut lines[i]);
+                set_table_further(&attributes[i], near, units.up(i), &mut lines[i]);
             }
         }
-        Way::Table
     }
 
     /// Of a small triangle.

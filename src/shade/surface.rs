@@ -45,8 +45,6 @@ pub struct Surface<'a, F: PixelFormat, D: DepthFormat> {
 pub(crate) struct Look<'a, F: PixelFormat, D: DepthFormat> {
     pub(crate) traits: Traits,
     pub(crate) layers: Layers<F, D>,
-    /// Whether a shader asks for near/w at pixels.
-    needs_near_w: bool,
     painter: Painter<'a, F, D>,
 }
 
@@ -84,16 +82,11 @@ impl<'a, F: PixelFormat, D: DepthFormat> Surface<'a, F, D> {
         let reads_target = S::REACH == Reach::Target;
         let code = if reads_target { &LayerCode::READS_TARGET } else { &LayerCode::OPAQUE };
         let layers = Layers { code, ..Layers::OPAQUE };
-        let traits = Traits::of(shader);
+        let traits = Traits::of(shader).with_near_w(S::REACH != Reach::Attributes);
         Self {
             cull: shader.cull(),
             coloring: shader.coloring(),
-            look: Look {
-                traits,
-                layers,
-                needs_near_w: S::REACH != Reach::Attributes,
-                painter: Painter::Shader(shader),
-            },
+            look: Look { traits, layers, painter: Painter::Shader(shader) },
         }
     }
 }
@@ -125,7 +118,6 @@ where
             look: Look {
                 traits,
                 layers,
-                needs_near_w: false,
                 painter: Painter::Material(material.recipe, paint_material::<F, D, K, Q>),
             },
         }
@@ -165,7 +157,7 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
 
     /// What set-up has to do, before a camera that may be orthographic, with colours that may all be grey, in fog or not.
     pub(crate) fn needs(&self, [is_orthographic, is_gray]: [bool; 2], is_foggy: bool) -> Needs {
-        let depth = !D::ALWAYS_PASSES || is_foggy || self.needs_near_w;
+        let depth = !D::ALWAYS_PASSES || is_foggy || self.traits.needs_near_w();
         self.traits.needs::<F>(depth, is_orthographic, is_gray)
     }
 

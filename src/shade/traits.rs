@@ -19,6 +19,8 @@ pub(crate) struct Traits {
     every_pixel: bool,
     /// Whether only the first channel of colours is read.
     is_gray: bool,
+    /// Whether near/w is asked for at pixels.
+    needs_near_w: bool,
     scale_log2: u8,
     packed_log2: Option<[u8; 2]>,
 }
@@ -32,6 +34,7 @@ impl Traits {
             straight: S::Quality::STRAIGHT,
             every_pixel: S::Quality::EVERY_PIXEL,
             is_gray: false,
+            needs_near_w: false,
             scale_log2: shader.texture_scale().min(8) as u8,
             packed_log2: shader.packed_log2().map(|log2| log2.map(|log2| log2 as u8)),
         }
@@ -41,6 +44,16 @@ impl Traits {
     #[inline]
     pub(crate) fn inputs(&self) -> Inputs {
         self.code.inputs
+    }
+
+    /// The same with near/w asked for at pixels, or not.
+    pub(crate) fn with_near_w(self, needs_near_w: bool) -> Self {
+        Self { needs_near_w, ..self }
+    }
+
+    /// Whether near/w is asked for at pixels.
+    pub(crate) fn needs_near_w(&self) -> bool {
+        self.needs_near_w
     }
 
     /// The same with only the first channel of colours read.
