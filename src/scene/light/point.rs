@@ -10,11 +10,13 @@ use core::{array, num::NonZeroU16};
 /// The functions of point lights. A light that is one refers to them: so only programs that make one link them.
 #[derive(Debug)]
 pub(super) struct PointCode {
-    /// Brings one to a mesh that stands as a pose says, and may be stretched: from its place and range, and its colour. `None` if its
-    /// light reaches nothing.
-    pub(super) bring: fn(&Pose, Option<&Stretch<'_>>, (Vec3, I16F16), [u8; 3]) -> Option<LocalPoint>,
+    pub(super) bring: BringPoint,
     pub(super) at: PointAt,
 }
+
+/// Brings one to a mesh that stands as a pose says, and may be stretched: from its place and range, and its colour. `None` if its light
+/// reaches nothing.
+type BringPoint = fn(&Pose, Option<&Stretch<'_>>, (Vec3, I16F16), [u8; 3]) -> Option<LocalPoint>;
 
 /// [`LocalPoint::at`].
 pub(super) type PointAt = fn(&LocalPoint, Option<&Stretch<'_>>, [I4F12; 3], Normal, bool) -> u32;
