@@ -41,7 +41,7 @@ pub(crate) struct TriangleSetup {
     pub(crate) z: Plane,
     /// near/w scaled to 31 bits; for the division. Not of straight triangles.
     pub(crate) q: Plane,
-    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear.
+    /// Of a small triangle: how many steps along a row attributes are nearly linear. Where u and v are not read it stays what it was.
     pub(crate) longest: i32,
     /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
     /// step is below 2¹².
@@ -74,7 +74,7 @@ impl TriangleSetup {
             is_extreme: false,
             z: Plane::default(),
             q: Plane::default(),
-            longest: 0,
+            longest: STRAIGHT,
             is_level: false,
             q_step: 0,
             q_step_zeros: 0,
@@ -82,6 +82,11 @@ impl TriangleSetup {
             q_min: 0,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
+    }
+
+    /// Before another shader's triangles, which may not read u and v.
+    pub(crate) fn forget_longest(&mut self) {
+        self.longest = STRAIGHT;
     }
 
     /// Finds out whether all colours are grey, if that is not known.
