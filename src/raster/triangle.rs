@@ -14,7 +14,7 @@ pub(crate) const ATTRIBUTES: usize = 5;
 
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
-pub(crate) struct TriangleSetup {
+pub struct TriangleSetup {
     /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
     /// triangle the uppermost.
     pub(crate) corners: [[i32; 2]; 3],
