@@ -87,6 +87,7 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     ) {
         (self.look, self.fog, self.window) = (look, fog, window);
         self.needs = look.needs(kind, fog.is_some());
+        self.prepared.setup.forget_longest();
     }
 
     #[inline]

@@ -40,10 +40,9 @@ impl Cull {
     #[inline]
     pub(crate) fn leaves_out(self, area: i32) -> bool {
         match self {
-            _ if area == 0 => true,
-            Self::Back => area > 0,
-            Self::Front => area < 0,
-            Self::None => false,
+            Self::Back => area >= 0,
+            Self::Front => area <= 0,
+            Self::None => area == 0,
         }
     }
 }

@@ -48,6 +48,24 @@ impl Gradients {
         }
     }
 
+    /// The greatest |Δx| + |Δy| of an edge, in 1/16 px.
+    #[inline]
+    pub(super) fn longest(&self) -> u32 {
+        let [across, down] = self.edges;
+        let length = |x: i32, y: i32| x.unsigned_abs() + y.unsigned_abs();
+        length(across[0], down[0])
+            .max(length(across[1], down[1]))
+            .max(length(across[0] + across[1], down[0] + down[1]))
+    }
+
+    /// The larger one of its height and its width, divided by twice its area: in 1/px, 12 fraction bits, rounded up from at most 8.0.
+    #[inline]
+    pub(super) fn thinness(&self) -> u32 {
+        let [height, width] = self.edges.map(|[b, c]| b.max(-c).max(0) - b.min(-c).min(0));
+        // 2⁹ times 2¹⁷: in 1/16 px · 2⁴⁸/`zeros`, of which 2⁸ makes 1/px, and with 12 fraction bits.
+        ((height.max(width) as u32 * self.reciprocal) >> ((12 - self.up) & 31)) + 1
+    }
+
     /// Sets a plane from its value at corner 0 and the rises to corners 1 and 2, these in units of 2⁸ of the value's; below 2¹⁹, and so
     /// is what they differ by.
     #[inline(always)]
@@ -76,11 +94,11 @@ impl Gradients {
     /// it stays a `margin` inside its range at the corners. Where there is no room for that it is the middle of the range, all over: or
     /// of the texel that this is in. Returns the least value, less that at corner 0, and the range; from 2¹⁹ on no plane is set.
     #[inline(never)]
-    pub(super) fn set_within(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> [i32; 2] {
+    pub(super) fn set_within(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> (i32, i32) {
         let [mut b, mut c] = *rises;
         let (least, greatest) = (b.min(c).min(0), b.max(c).max(0));
         if greatest - least >= 1 << 19 {
-            return [least, greatest - least];
+            return (least, greatest - least);
         }
         let (low, high) = (least + margin, greatest - margin);
         let mut first = (low + high) >> 1;
@@ -94,6 +112,6 @@ impl Gradients {
             }
         }
         self.set(plane, ((at + first) << 8) as u32, [b, c]);
-        [least, greatest - least]
+        (least, greatest - least)
     }
 }

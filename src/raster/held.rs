@@ -5,6 +5,7 @@
 //! - Assumes: what [`small`](super::small) has asked of it.
 
 use super::attribute::Attribute;
+use super::course::{Course, Fall, Kept, is_little, kept, limits};
 use super::gradients::Gradients;
 use super::needs::{Needs, SmallTriangle};
 use super::plane::Plane;
@@ -30,8 +31,7 @@ impl TriangleSetup {
         if needs.scale != 0 && !needs.are_narrow(vertices) {
             return false;
         }
-        self.hold();
-        self.is_held = true;
+        (self.is_held, self.longest) = (true, STRAIGHT);
         if needs.reads_color() {
             self.set_gray(vertices, needs.gray);
         }
@@ -70,36 +70,52 @@ impl TriangleSetup {
         }
     }
 
-    /// Begins a triangle whose rows are held.
-    fn hold(&mut self) {
-        self.longest = STRAIGHT as u8;
+    /// Lets u and v, whose planes are set as linear, follow perspective: bends both and holds them, unless they are straight enough, or
+    /// if they are lifted. False if a quadratic is not exact enough, or if one differs by 2²⁶ or more: V takes up to a quarter of that
+    /// besides.
+    #[inline(never)]
+    pub(super) fn bend(&mut self, small: &SmallTriangle<'_>) -> bool {
+        let [q0, q1, q2] = small.q;
+        let (least, most) = (q0.min(q1).min(q2), q0.max(q1).max(q2));
+        let [u, v, ..] = &self.attributes;
+        let limits = limits(small.needs.packing.is_large());
+        let are_little = [(u, limits[0]), (v, limits[1])]
+            .map(|(of, limits)| is_little(of.range, most - least, least, limits));
+        are_little == [true; 2]
+            || Fall::new(most - least, least).is_some_and(|fall| {
+                self.lift(small, &fall, are_little).is_some() || self.bend_both(small, &fall)
+            })
     }
 
-    /// Bends u and v, whose planes are set as linear, and holds them; unless they are straight enough. False if a quadratic is not exact
-    /// enough, or if one differs by 2²⁶ or more: V takes up to a quarter of that besides.
+    /// Lifts u and v as far as they need it, unless one is to be bent: then `None`. Some are straight since their errors are little.
     #[inline(never)]
-    pub(super) fn bend(&mut self, small: &SmallTriangle<'_>, limit: u32) -> bool {
-        let &SmallTriangle { vertices, needs, ref gradients, q, .. } = small;
-        // By reference: it would be copied.
-        let bend = Bend::new(&gradients.edges, q);
-        let Some(bend) = &bend else {
-            return false;
-        };
-        let at = |i: usize| vertices.map(|vertex| needs.scaled_uv(vertex, i));
-        let is_straight =
-            |[a, b, c]: [i32; 3]| bend.is_straight_for(limit, [b.wrapping_sub(a), c.wrapping_sub(a)]);
-        if is_straight(at(0)) && is_straight(at(1)) {
-            return true;
+    fn lift(&mut self, small: &SmallTriangle<'_>, fall: &Fall, are_little: [bool; 2]) -> Option<()> {
+        let loss = fall.loss(self.z.steps, small.gradients.thinness());
+        let [u, v, ..] = &mut self.attributes;
+        let kept_u = if are_little[0] { None } else { kept_end(u, 0, small, fall, loss)? };
+        let kept_v = if are_little[1] { None } else { kept_end(v, 1, small, fall, loss)? };
+        if let Some(kept) = kept_u {
+            fall.lift(&mut u.plane, kept, small.gradients.pixel);
         }
+        if let Some(kept) = kept_v {
+            fall.lift(&mut v.plane, kept, small.gradients.pixel);
+        }
+        Some(())
+    }
+
+    /// Bends u and v.
+    #[inline(never)]
+    fn bend_both(&mut self, small: &SmallTriangle<'_>, fall: &Fall) -> bool {
+        let &SmallTriangle { vertices, needs, ref gradients, ref q, .. } = small;
         // ∇q/q_mid per column and row, 16 fraction bits.
-        let Some(slopes_of_q) = bend.slopes(self.z.steps) else {
+        let Some(slopes_of_q) = fall.slopes(self.z.steps, gradients.longest()) else {
             return false;
         };
-        self.hold();
+        let rises_of_q = [fall.rise(q[0], q[1]), fall.rise(q[0], q[2])];
         self.is_bent = true;
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
-        let mut longest = STRAIGHT;
+        let mut longest = i32::from(STRAIGHT);
         while (longest * longest) * slopes_of_q[0].abs() > 3 << 13 {
             longest >>= 1;
         }
@@ -107,12 +123,12 @@ impl TriangleSetup {
         for i in 0..2 {
             // One after another, so that what they take is not on the stack together.
             let (attribute, quadratic) = (&mut self.attributes[i], &mut self.bends[i]);
-            let mut rise = attribute.set_range(at(i), 0);
+            let mut rise = attribute.set_range(vertices.map(|vertex| needs.scaled_uv(vertex, i)), 0);
             if attribute.range >= 1 << 26 {
                 return false;
             }
             set_quadratic(quadratic, &attribute.plane.steps, slopes_of_q);
-            bend_rise(&mut rise, bend);
+            bend_rise(&mut rise, &rises_of_q);
             let origin = attribute.origin();
             gradients.set_plane(&mut attribute.plane, origin, &rise);
             bend_plane(&mut attribute.plane, quadratic, gradients);
@@ -149,7 +165,7 @@ impl TriangleSetup {
     }
 
     /// u and v of a bent triangle, as [`TriangleSetup::along`].
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn along_bent(&self, place: [i32; 2], steps: i32) -> [(i32, i32); 2] {
         let [u, v, ..] = &self.attributes;
         let place = self.beyond_corner(place);
@@ -162,6 +178,29 @@ impl TriangleSetup {
         let [corner_x, corner_y] = self.corners[0];
         [x - (corner_x >> 4), y - (corner_y >> 4)]
     }
+}
+
+/// The value that u or v keeps, if it is to be lifted: that at an end of its range, as far inside as its margin. `None` if it is to be bent.
+#[inline(never)]
+fn kept_end(
+    attribute: &Attribute,
+    i: usize,
+    small: &SmallTriangle<'_>,
+    fall: &Fall,
+    loss: u32,
+) -> Option<Option<i32>> {
+    let &SmallTriangle { vertices, needs, ref q, .. } = small;
+    match fall.course(attribute, loss, limits(needs.packing.is_large())[i & 1]) {
+        Course::Straight => return Some(None),
+        Course::Lifted => {}
+        Course::Bent => return None,
+    }
+    let margin = i32::from(needs.margins[i]) << 8;
+    let kept = match kept(&vertices.map(|vertex| needs.scaled_uv(vertex, i)), q)? {
+        Kept::Greatest => attribute.least.wrapping_add_unsigned(attribute.range).wrapping_sub(margin),
+        Kept::Least => attribute.least.wrapping_add(margin),
+    };
+    Some(Some(kept))
 }
 
 /// A held attribute m columns right and n rows below corner 0's pixel, I16F16, and its step along a row of at most `longest` steps, in
@@ -194,9 +233,8 @@ fn set_quadratic(to: &mut [i32; 3], &[right, down]: &[i32; 2], [q_right, q_down]
 
 /// V, in the place of ∇u: Δuᵢ·(1 + Δqᵢ/q_mid), in units of 2⁸.
 #[inline(never)]
-fn bend_rise(rise: &mut [i32; 2], bend: &Bend) {
-    for (i, rise) in rise.iter_mut().enumerate() {
-        let rise_of_q = bend.rise(i);
+fn bend_rise(rise: &mut [i32; 2], rises_of_q: &[i32; 2]) {
+    for (rise, &rise_of_q) in rise.iter_mut().zip(rises_of_q) {
         let change = mul_16(*rise, rise_of_q.unsigned_abs());
         *rise = (if rise_of_q < 0 { *rise - change } else { *rise + change }) >> 8;
     }

@@ -1,6 +1,7 @@
 //! From a triangle on the screen to runs of pixels.
 
 mod attribute;
+mod course;
 mod depth;
 mod folded;
 mod gradients;

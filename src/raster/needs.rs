@@ -31,8 +31,8 @@ pub(crate) struct InputCode {
 pub(super) struct UvCode {
     /// Of a small triangle, as plain. Returns as [`InputCode::small`] does.
     pub(super) small: fn(&mut TriangleSetup, &SmallTriangle<'_>) -> bool,
-    /// Bends them, unless they are straighter than a limit. Likewise.
-    pub(super) bend: fn(&mut TriangleSetup, &SmallTriangle<'_>, u32) -> bool,
+    /// Lets them follow perspective, if that takes more. Likewise.
+    pub(super) bend: fn(&mut TriangleSetup, &SmallTriangle<'_>) -> bool,
     /// Completes those that are held and linear; exactly so, or nearly.
     pub(super) complete_held: fn(&mut TriangleSetup, &SmallTriangle<'_>, &Scaling, bool),
     /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.

@@ -20,6 +20,10 @@ pub(super) const PLANE_MARGIN: u8 = 5;
 /// With what packing rounds down, a unit of 256 texels. From this on coordinates are packed.
 pub(super) const PACKED_MARGIN: u8 = PLANE_MARGIN + 1;
 
+/// How many steps a run may have, with sides of more than 64 texels. A step is cut to 8 bits for 256 texels: after 15 it is off by 1/17
+/// texel, and carries have moved v as far as there is room for.
+pub(super) const LARGE: u8 = 15;
+
 /// How far texture coordinates may be off in the runs of one shader. All lengths are in I16F16, before coordinates are scaled
 /// by `Attribute::scale_log2`. If they are not packed the unit is 1, and no error adds up.
 #[derive(Clone, Copy)]
@@ -48,7 +52,7 @@ impl Packing {
         let Some([a, b]) = log2 else {
             return Self { unit_log2: 0, inset: 1, steps: 0, turn_log2: 31 };
         };
-        let steps = if a.max(b) > 6 { 15 } else { 63 };
+        let steps = if a.max(b) > 6 { LARGE.into() } else { 63 };
         let unit_log2 = (a.max(b).wrapping_sub(scale_log2) & 15) as u8;
         let turn_log2 = (16 + a).wrapping_sub(scale_log2) as u8;
         Self { unit_log2, inset: (steps / 4 + 3) << unit_log2, steps: steps as u8, turn_log2 }
@@ -72,6 +76,12 @@ impl Packing {
         }
         let turn_log2 = self.turn_log2 + log2 as u8;
         Self { unit_log2: self.unit_log2 + log2 as u8, inset: self.inset << log2, turn_log2, ..*self }
+    }
+
+    /// Whether a side has more than 64 texels, so that runs may be off by more of a texel.
+    #[inline]
+    pub(super) fn is_large(&self) -> bool {
+        self.steps == LARGE
     }
 
     /// The larger one of the units of u and v, I16F16.

@@ -39,12 +39,15 @@
 //! fall/2 is wrong: length·fall²/8 pixels, of which 3/32 are allowed. A row is drawn as straight lines between points
 //! of the quadratic, which may be off by 3/32 again. Rounding has the rest of the quarter pixel.
 //!
+//! Before that each coordinate is asked whether it needs it: see [`course`](super::course). Some are straight enough if they are lifted.
+//!
 //! Colours are linear all the same: they may be off by a step of the target's finest channel.
 
 use super::gradients::Gradients;
 use super::needs::{ColorBend, Needs, SmallTriangle};
-use super::straight::{Bend, Straight};
-use super::triangle::TriangleSetup;
+use super::packing::LARGE;
+use super::straight::Straight;
+use super::triangle::{STRAIGHT, TriangleSetup};
 use crate::geometry::ScreenVertex;
 
 impl TriangleSetup {
@@ -58,14 +61,12 @@ impl TriangleSetup {
     ) -> bool {
         let [top @ [x, y], next, last] = self.corners;
         let ([bx, by], [cx, cy]) = ([next[0] - x, next[1] - y], [last[0] - x, last[1] - y]);
-        let size = |x: i32| x ^ (x >> 31);
         self.is_small = true;
         (self.is_held, self.is_bent, self.sliver) = (false, false, false);
-        // At least the largest difference, and less than twice that.
-        let largest = (size(bx) | by | size(cx) | cy) as u32;
-        // Thick enough: no edge is longer than 2 · `largest` along an axis, so along the other one the triangle measures at
-        // least 4/2 sixteenths. A rise of 2²⁷ over that makes a step of 2³⁰, which fits.
-        if largest * 4 > area {
+        let (width, height) = ((bx.max(cx).max(0) - bx.min(cx).min(0)) as u32, by.max(cy) as u32);
+        // Thick enough: where it is longest, a row or a column is `area` by its height or width long, at least 2 sixteenths. A rise of 2²⁷
+        // over that makes a step of 2³⁰, which fits.
+        if width.max(height) * 2 > area {
             return false;
         }
         if !READS && !needs.depth {
@@ -79,16 +80,22 @@ impl TriangleSetup {
             return false;
         }
         let [rise_b, rise_c] = [q_b, q_c].map(|other| other.wrapping_sub(q) as i32);
+        let size = |x: i32| x ^ (x >> 31);
         let fall = (size(rise_b) | size(rise_c) | size(rise_b.wrapping_sub(rise_c))) as u32;
         if fall >= 1 << 27 {
             return false;
         }
-        let gradients = Gradients::new(top, [[bx, by], [cx, cy]], area);
-        gradients.set_plane(&mut self.z, q, &[rise_b >> 8, rise_c >> 8]);
+        // Made where it stays: nothing is copied.
+        let small = &SmallTriangle {
+            vertices,
+            needs,
+            gradients: Gradients::new(top, [[bx, by], [cx, cy]], area),
+            q: [q, q_b, q_c],
+        };
+        small.gradients.set_plane(&mut self.z, q, &[rise_b >> 8, rise_c >> 8]);
         if !READS {
             return true;
         }
-        let small = &SmallTriangle { vertices, needs, gradients, q: [q, q_b, q_c] };
         if needs.every_pixel {
             return self.set_held(small);
         }
@@ -97,22 +104,19 @@ impl TriangleSetup {
             && let Straight::Below(limit) = needs.straight
         {
             let least = q.min(q_b).min(q_c);
-            // As `Bend::is_needless`, with the largest difference for all edges: 26 bits, and 12 times 15 and a bit.
-            if (2 * largest) * ((fall >> 12) + 1) > ((least >> 16) * limit.get()) >> 8 {
+            // As `Bend::is_straight`, with width and height for all edges: 25 bits, and 12 times 15 and a bit.
+            if (width + height) * ((fall >> 12) + 1) > ((least >> 16) * limit.get()) >> 8 {
                 bend = ColorBend::new(fall, least, needs.color_step.into());
             }
         } else if needs.code.uv.is_some() {
             return self.set_held(small);
         }
         if let Some(uv) = &needs.code.uv {
+            self.longest = if needs.packing.is_large() { LARGE } else { STRAIGHT };
             if !(uv.small)(self, small) {
                 return false;
             }
-            if bend.is_needed()
-                && let Straight::Below(limit) = needs.straight
-                && !Bend::is_needless(&small.gradients.edges, small.q, limit.get())
-                && !(uv.bend)(self, small, limit.get())
-            {
+            if bend.is_needed() && !(uv.bend)(self, small) {
                 return false;
             }
             if !self.is_bent && needs.packing.is_steep(self.attributes[0].plane.steps[0]) {
@@ -133,7 +137,7 @@ impl TriangleSetup {
             let [a, b, c] = vertices.map(|vertex| needs.scaled_uv(vertex, i) & !0xff);
             let rises = [b, c].map(|other| other.wrapping_sub(a) >> 8);
             let attribute = &mut self.attributes[i];
-            let [least, range] =
+            let (least, range) =
                 gradients.set_within(&mut attribute.plane, a >> 8, &rises, needs.margins[i].into());
             if range >= 1 << 19 {
                 return false;
@@ -151,12 +155,16 @@ impl TriangleSetup {
     pub(super) fn set_small_colors(&mut self, small: &SmallTriangle<'_>, bend: ColorBend) -> bool {
         let &SmallTriangle { vertices, needs, ref gradients, .. } = small;
         self.set_gray(vertices, needs.gray);
-        let (first, count) = (if needs.reads_uv() { 2 } else { 0 }, if self.gray { 1 } else { 3 });
-        for (i, attribute) in self.attributes.iter_mut().skip(first).take(count).enumerate() {
+        let is_gray = self.gray;
+        let colors = if needs.reads_uv() { &mut self.attributes[2..] } else { &mut self.attributes[..] };
+        for (i, attribute) in (0..3).zip(colors) {
             let [a, b, c] = vertices.map(|vertex| i32::from(vertex.color[i].to_bits()));
-            let [_, range] = gradients.set_within(&mut attribute.plane, a, &[b - a, c - a], 1);
+            let (_, range) = gradients.set_within(&mut attribute.plane, a, &[b - a, c - a], 1);
             if bend.is_too_large(range) {
                 return false;
+            }
+            if is_gray {
+                break;
             }
         }
         true

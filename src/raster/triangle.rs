@@ -7,21 +7,21 @@ use crate::math::recip::Reciprocal;
 use crate::num::{mul_round, normalise, shift_round, wide, wide_inlined};
 
 /// The longest row of a straight triangle, in steps.
-pub(crate) const STRAIGHT: i32 = 31;
+pub(crate) const STRAIGHT: u8 = 31;
 
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(crate) const ATTRIBUTES: usize = 5;
 
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
-pub(crate) struct TriangleSetup {
+pub struct TriangleSetup {
     /// near/w with 31 fraction bits; for depth.
     pub(crate) z: Plane,
     /// What perspective takes. Of a small triangle that is held: of u and v what is to be added x², xy and y² times, x and y being the way
     /// from corner 0's pixel. Of any other that is bent: near/w scaled to 31 bits, as a plane; the size of its step along a row with the
     /// first bit set; the least that it is at a corner; and what straight lines of v keep from the ends of its range.
     pub(super) bends: [[i32; 3]; 2],
-    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear.
+    /// Of a held or bent triangle: how many steps along a row attributes are nearly linear. Where u and v are not read it stays what it was.
     pub(crate) longest: u8,
     /// Of a bent one: how far the step of q was shifted, and whether q rises.
     pub(super) q_step_zeros: u8,
@@ -72,12 +72,17 @@ impl TriangleSetup {
             is_extreme: false,
             z: Plane::default(),
             bends: [[0; 3]; 2],
-            longest: 0,
+            longest: STRAIGHT,
             is_level: false,
             q_step_zeros: 0,
             q_rises: false,
             attributes: [Attribute::default(); ATTRIBUTES],
         }
+    }
+
+    /// Before another shader's triangles, which may not read u and v.
+    pub(crate) fn forget_longest(&mut self) {
+        self.longest = STRAIGHT;
     }
 
     /// Finds out whether all colours are grey, if that is not known.

@@ -109,7 +109,8 @@ impl<'a> Texture<'a> {
     #[inline]
     pub(crate) const fn is_packable(&self, scale_log2: u32) -> bool {
         let (a, b) = (self.log2_width as u32, self.log2_height as u32);
-        a >= 1 && b >= 1 && a <= 8 && b <= 8 && a >= scale_log2 && b >= scale_log2
+        let (least, most) = if a < b { (a, b) } else { (b, a) };
+        least >= 1 && least >= scale_log2 && most <= 8
     }
 
     /// Whether a side has more than 64 texels, so that packed coordinates have less than 10 fraction bits.

@@ -79,11 +79,23 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for Colors<M,
 
 impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F, C> {
     type Word = F::Word;
+    type At = C;
+    type Step = C;
     const BENDS: bool = false;
+    const PACKS: bool = C::DROPPED > 0;
 
     #[inline]
-    fn row(&self, pixels: &mut [F::Word], at: [i32; M], step: [i32; M]) {
-        let (at, step) = (C::scaled::<F>(at), C::scaled_step::<F>(step));
-        draw_row(pixels, C::place(at), C::step(step), |at| at.word::<F>());
+    fn at(&self, at: [i32; M], _: C) -> C {
+        C::place(C::scaled::<F>(at))
+    }
+
+    #[inline]
+    fn step(&self, step: [i32; M]) -> C {
+        C::step(C::scaled_step::<F>(step))
+    }
+
+    #[inline]
+    fn row(&self, pixels: &mut [F::Word], at: C, step: C) {
+        draw_row(pixels, at, step, |at| at.word::<F>());
     }
 }

@@ -11,7 +11,7 @@
 use super::curve::{Curve, distance};
 use super::quality::Quality;
 use super::units::{Form, Units};
-use crate::raster::{ATTRIBUTES, WIDEST};
+use crate::raster::{ATTRIBUTES, TriangleSetup};
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -36,18 +36,41 @@ pub trait Fill<W> {
 /// A fill of a small triangle's rows, from `N` attributes.
 pub trait FillRow<const N: usize> {
     type Word;
+    /// All attributes at a pixel, as rows take them.
+    type At: Copy;
+    /// A step of all of them: packed once a triangle, or once a run of one that is bent.
+    type Step: Copy;
 
     /// Whether the first two attributes may be texture coordinates, which may be bent.
     const BENDS: bool = N > 1;
 
-    /// The most pixels side by side for which [`FillRow::row`] is exact enough; asked of those that may be bent.
+    /// Whether packing a step takes more than reading it again, for each row.
+    const PACKS: bool = true;
+
+    /// From I16F16, and the step from there on.
+    fn at(&self, at: [i32; N], step: Self::Step) -> Self::At;
+
+    /// From I16F16.
+    fn step(&self, step: [i32; N]) -> Self::Step;
+
+    /// From a bent triangle, at the first of `steps` + 1 pixels side by side: `at` and `step` have all but the first two attributes.
     #[inline]
-    fn longest(&self) -> usize {
-        WIDEST
+    fn bent(
+        &self,
+        setup: &TriangleSetup,
+        (place, steps): ([i32; 2], i32),
+        mut at: [i32; N],
+        mut step: [i32; N],
+    ) -> (Self::At, Self::Step) {
+        for (i, (at, step)) in at.iter_mut().zip(&mut step).take(2).enumerate() {
+            (*at, *step) = setup.along(i, place, steps);
+        }
+        let step = self.step(step);
+        (self.at(at, step), step)
     }
 
-    /// At most so many pixels side by side, from attributes in I16F16 at the first of them and their steps.
-    fn row(&self, pixels: &mut [Self::Word], at: [i32; N], step: [i32; N]);
+    /// At most so many pixels side by side.
+    fn row(&self, pixels: &mut [Self::Word], at: Self::At, step: Self::Step);
 }
 
 /// What can be stepped from pixel to pixel.
@@ -143,6 +166,18 @@ impl<const N: usize, Q: Quality, W, C: Fn([i32; N]) -> W> Fill<W> for Each<N, Q,
 
 impl<const N: usize, Q, W, C: Fn([i32; N]) -> W> FillRow<N> for Each<N, Q, W, C> {
     type Word = W;
+    type At = [i32; N];
+    type Step = [i32; N];
+
+    #[inline]
+    fn at(&self, at: [i32; N], _: [i32; N]) -> [i32; N] {
+        at
+    }
+
+    #[inline]
+    fn step(&self, step: [i32; N]) -> [i32; N] {
+        step
+    }
 
     #[inline]
     fn row(&self, pixels: &mut [W], at: [i32; N], step: [i32; N]) {
@@ -169,9 +204,17 @@ impl<W: Copy> Fill<W> for Even<W> {
 
 impl<W: Copy> FillRow<0> for Even<W> {
     type Word = W;
+    type At = ();
+    type Step = ();
 
     #[inline]
-    fn row(&self, pixels: &mut [W], _: [i32; 0], _: [i32; 0]) {
+    fn at(&self, _: [i32; 0], (): ()) {}
+
+    #[inline]
+    fn step(&self, _: [i32; 0]) {}
+
+    #[inline]
+    fn row(&self, pixels: &mut [W], (): (), (): ()) {
         draw_row(pixels, (), (), |()| self.0);
     }
 }

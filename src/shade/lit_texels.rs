@@ -8,11 +8,12 @@ use super::channels::{Channels, lit};
 use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::Light;
-use super::packed::{draw_texels, integer_bits, longest_of};
+use super::packed::{bent, draw_texels, integer_bits, place_of, step_of};
 use super::texels::Texels;
 use super::units::Units;
 use crate::frame::PixelFormat;
 use crate::num::IS_ARMV6M;
+use crate::raster::TriangleSetup;
 use crate::scene::Texture;
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -63,21 +64,38 @@ macro_rules! fill_row_of_lit_texels {
     ($n:literal, $m:literal) => {
         impl<F: PixelFormat, C: Channels<$m>> FillRow<$n> for LitTexels<'_, $m, F, C> {
             type Word = F::Word;
+            type At = ([i32; 2], C);
+            type Step = ([i32; 2], C);
 
             #[inline]
-            fn longest(&self) -> usize {
-                longest_of(self.texture, self.is_packed)
+            fn at(&self, [u, v, light @ ..]: [i32; $n], (step, _): ([i32; 2], C)) -> ([i32; 2], C) {
+                (place_of(self.texture, self.is_packed, [u, v], step), C::place(light))
+            }
+
+            #[inline]
+            fn step(&self, [u, v, light @ ..]: [i32; $n]) -> ([i32; 2], C) {
+                (step_of(self.texture, self.is_packed, [u, v]), C::step(light))
+            }
+
+            #[inline]
+            fn bent(
+                &self,
+                setup: &TriangleSetup,
+                along: ([i32; 2], i32),
+                [_, _, light @ ..]: [i32; $n],
+                [_, _, light_step @ ..]: [i32; $n],
+            ) -> (([i32; 2], C), ([i32; 2], C)) {
+                let (at, step) = bent(self.texture, self.is_packed, setup, along);
+                ((at, C::place(light)), (step, C::step(light_step)))
             }
 
             #[inline]
             fn row(
                 &self,
                 pixels: &mut [F::Word],
-                [u, v, light @ ..]: [i32; $n],
-                [u_step, v_step, light_step @ ..]: [i32; $n],
+                (at, light): ([i32; 2], C),
+                (step, light_step): ([i32; 2], C),
             ) {
-                let (light, light_step) = (C::place(light), C::step(light_step));
-                let (at, step) = ([u, v], [u_step, v_step]);
                 let (texture, is_packed) = (self.texture, self.is_packed);
                 if IS_ARMV6M && F::KEEPS {
                     draw_texels(texture, is_packed, pixels, (at, ()), (step, ()), |texel, ()| {

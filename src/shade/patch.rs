@@ -14,7 +14,7 @@ use super::cover::Cover;
 use super::fill::{Fill, FillRow};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::U1F31;
-use crate::raster::{Rows, WIDEST};
+use crate::raster::Rows;
 use core::hint::black_box;
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
@@ -36,8 +36,9 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
         let depth = depth.get_mut(..length).unwrap_or_default();
         let origin =
             origin.wrapping_add((spans.row as usize).wrapping_mul(width)).wrapping_add(spans.column as usize);
-        let longest = if setup.is_bent { setup.longest as usize + 1 } else { WIDEST };
-        let longest = longest.min(fill.longest());
+        let longest = setup.longest as usize + 1;
+        let steps = || core::array::from_fn(|i| attributes[i].plane.steps[0]);
+        let plain_step = fill.step(steps());
         for n in spans.rows().rev() {
             let [mut start, end] = spans.span(n).map(usize::from);
             // One run of visible pixels after another; mostly it is all of the row.
@@ -65,12 +66,13 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
                         pixels = pixels.get_mut(..count).unwrap_or_default();
                     }
                 }
-                let mut at = attributes.each_ref().map(|attribute| attribute.plane.at(x, y) as i32);
-                let mut step = attributes.each_ref().map(|attribute| attribute.plane.steps[0]);
-                if L::BENDS && setup.is_bent {
-                    let [u, v] = setup.along_bent([x, y], count as i32 - 1);
-                    [at[0], at[1], step[0], step[1]] = [u.0, v.0, u.1, v.1];
-                }
+                let at = core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
+                let (at, step) = if L::BENDS && setup.is_bent {
+                    fill.bent(setup, ([x, y], count as i32 - 1), at, steps())
+                } else {
+                    let step = if L::PACKS { plain_step } else { fill.step(steps()) };
+                    (fill.at(at, step), step)
+                };
                 fill.row(pixels, at, step);
             }
         }

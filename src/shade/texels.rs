@@ -11,9 +11,10 @@ use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
-use super::packed::{downs, draw_texels, integer_bits, longest_of};
+use super::packed::{bent, downs, draw_texels, integer_bits, place_of, step_of};
 use super::units::Units;
 use crate::frame::PixelFormat;
+use crate::raster::TriangleSetup;
 use crate::scene::Texture;
 use core::marker::PhantomData;
 
@@ -83,11 +84,30 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
 impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
     type Word = F::Word;
+    type At = [i32; 2];
+    type Step = [i32; 2];
 
     #[inline]
-    fn longest(&self) -> usize {
-        longest_of(self.texture, self.is_packed)
+    fn at(&self, at: [i32; 2], step: [i32; 2]) -> [i32; 2] {
+        place_of(self.texture, self.is_packed, at, step)
     }
+
+    #[inline]
+    fn step(&self, step: [i32; 2]) -> [i32; 2] {
+        step_of(self.texture, self.is_packed, step)
+    }
+
+    #[inline]
+    fn bent(
+        &self,
+        setup: &TriangleSetup,
+        along: ([i32; 2], i32),
+        _: [i32; 2],
+        _: [i32; 2],
+    ) -> ([i32; 2], [i32; 2]) {
+        bent(self.texture, self.is_packed, setup, along)
+    }
+
     #[inline]
     fn row(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         draw_texels(self.texture, self.is_packed, pixels, (at, ()), (step, ()), |texel, ()| F::rgb565(texel));
