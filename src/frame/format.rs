@@ -210,7 +210,7 @@ fn in_light(texel: u16, light: [u32; 3]) -> u16 {
     const HALF: u32 = 0x8000;
     // 257/65536 is 1/255 but for 2⁻¹⁶ of it, and no product divided by 255 is so close to a half that this matters. Channels stay in
     // their places: to move them there and back would take 7 cycles more on a Cortex-M4.
-    let (texel, [red, green, blue]) = (u32::from(texel), light.map(|light| light << 8 | light));
+    let (texel, [red, green, blue]) = (u32::from(texel), light.map(|light| light + (light << 8)));
     let red = ((texel & 0xf800) * red + (HALF << 11)) & (0xf800 << 16);
     let green = ((texel & 0x07e0) * green + (HALF << 5)) & (0x07e0 << 16);
     let blue = (texel & 0x001f) * blue + HALF;
