@@ -27,9 +27,11 @@ use core::fmt;
 pub struct Texture<'a> {
     /// Native-endian RGB565 words.
     texels: &'a [u16],
-    // Of 16 bits, so that there is no gap behind them, and copies are made word by word.
-    log2_width: u16,
-    log2_height: u16,
+    log2_width: u8,
+    log2_height: u8,
+    /// Coordinates may be packed if they are scaled by less than 2^this. (Of 16 bits, so that there is no gap behind it, and copies are
+    /// made word by word.)
+    packed_scales: u16,
     /// For packed coordinates, see the shaders of [`Material`](crate::Material).
     mask: u32,
     multiplier: u32,
@@ -75,10 +77,13 @@ impl<'a> Texture<'a> {
         if texels.len() != expected {
             return Err(TextureError::Length { expected, found: texels.len() });
         }
+        let (least, most) =
+            if log2_width < log2_height { (log2_width, log2_height) } else { (log2_height, log2_width) };
         Ok(Self {
             texels,
-            log2_width: log2_width as u16,
-            log2_height: log2_height as u16,
+            log2_width: log2_width as u8,
+            log2_height: log2_height as u8,
+            packed_scales: if least >= 1 && most <= 8 { least as u16 + 1 } else { 0 },
             mask: (0xffff_0000 << (16 - log2_height)) | (((1 << log2_width) - 1) << (16 - log2_width)),
             multiplier: 1 + (1 << (16 - log2_height)),
         })
@@ -108,9 +113,7 @@ impl<'a> Texture<'a> {
     /// at least 2^`scale_log2`.
     #[inline]
     pub(crate) const fn is_packable(&self, scale_log2: u32) -> bool {
-        let (a, b) = (self.log2_width as u32, self.log2_height as u32);
-        let (least, most) = if a < b { (a, b) } else { (b, a) };
-        least >= 1 && least >= scale_log2 && most <= 8
+        scale_log2 < self.packed_scales as u32
     }
 
     /// Whether a side has more than 64 texels, so that packed coordinates have less than 10 fraction bits.
@@ -144,7 +147,7 @@ impl<'a> Texture<'a> {
     /// The texel of the texture that is seen at whole coordinates if it is turned round at each border, modulo its size.
     #[inline]
     pub(crate) fn mirrored(&self, u: i32, v: i32) -> [i32; 2] {
-        let turned = |at: i32, log2: u16| if at >> log2 & 1 == 0 { at } else { !at };
+        let turned = |at: i32, log2: u8| if at >> log2 & 1 == 0 { at } else { !at };
         [turned(u, self.log2_width), turned(v, self.log2_height)]
     }
 
