@@ -131,13 +131,13 @@ pub(crate) fn draw_texels<W, P: Steps>(
     let (at, step) = ((at[0] as u32, other), (step[0] as u32, other_step));
     let texels = texture.texels();
     let is_square = |log2: u32| IS_ARMV6M || texture.log2()[0] == log2;
-    if is_square(6)
-        && let Ok(texels) = <&[u16; 0x1000]>::try_from(texels)
+    if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels)
+        && is_square(6)
     {
         let texel = squared::<6, _>(texture, texels);
         draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
-    } else if is_square(5)
-        && let Ok(texels) = <&[u16; 0x400]>::try_from(texels)
+    } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels)
+        && is_square(5)
     {
         let texel = squared::<5, _>(texture, texels);
         draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
