@@ -22,7 +22,7 @@ use crate::scene::{Mesh, Triangles, Vertex};
 /// since clipping makes its polygon in the cache's memory.
 const CACHED: usize = MOST_CORNERS;
 /// How many hints there are: a vertex's is that of its index modulo this.
-const HINTS: usize = 32;
+const HINTS: usize = 64;
 /// u of a vertex that has no attributes yet.
 const MISSING: I16F16 = I16F16::MIN;
 

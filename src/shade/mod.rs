@@ -16,6 +16,7 @@ mod fragment;
 mod inverses;
 mod kinds;
 mod layered;
+mod level;
 mod light;
 mod lit_texels;
 mod loops;

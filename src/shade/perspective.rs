@@ -40,9 +40,10 @@
 use super::curve::{Curve, Linear};
 use super::fill::Fill;
 use super::inverses::ONE_LOG2;
+use super::level::{level, level_further};
 use super::units::{Form, Units};
 use crate::math::recip::looked_up;
-use crate::num::{IS_ARMV6M, mul_17, mul_high, normalise};
+use crate::num::{IS_ARMV6M, mul_high, normalise};
 use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 use core::hint::black_box;
 
@@ -334,59 +335,6 @@ impl<'a> Perspective<'a> {
         }
         Way::Straight
     }
-}
-
-/// An attribute's straight line where q is the same all along, or with its step where it nearly is; v keeps an inset from its ends.
-#[inline(always)]
-fn level(
-    attribute: &Attribute,
-    place: &Place,
-    q_step: i32,
-    steps: u32,
-    inset: Option<u32>,
-    line: &mut Linear,
-) {
-    let plane = &attribute.plane;
-    // 17 bits of 1/q do: the ends are held in the range.
-    let reciprocal = (place.reciprocal + (1 << 13)) >> 14;
-    let above = attribute.above(plane.at(place.x, place.y) as i32, reciprocal, place.zeros);
-    // Of three pixels or more, whose values are within ±2³⁰, a step is less than that.
-    let mut step = if steps > 0 { plane.steps[0] } else { 0 };
-    if q_step != 0 {
-        step = step.wrapping_sub(bend_of_level(attribute, above, q_step));
-    }
-    let step = mul_17(step, reciprocal);
-    let down = attribute.shift() - place.zeros as i32;
-    let step = if down >= 0 { step >> (down & 31) } else { step << (-down & 31) };
-    let (at, step) = match inset {
-        Some(inset) => attribute.along_inside((above, step), steps as i32, inset),
-        None => attribute.along((above, step), steps as i32),
-    };
-    let scale_log2 = attribute.scale_log2();
-    *line = Linear { at: (at << scale_log2) as u32, slope: step << scale_log2 };
-}
-
-/// (u − u₀)·q′ in units of the plane: what the step of (u − u₀)·q is more than q times the step of u. q′ is less than 2¹².
-#[cold]
-#[inline(never)]
-fn bend_of_level(attribute: &Attribute, above: u32, q_step: i32) -> i32 {
-    let offset = (above as i32).max(0).min(attribute.range as i32).wrapping_add(attribute.low);
-    let up = attribute.shift().clamp(0, 19);
-    let size = mul_high(offset << (attribute.shift() - up), q_step.unsigned_abs() << up);
-    if q_step < 0 { -size } else { size }
-}
-
-/// As [`level`], in a loop.
-#[inline(never)]
-fn level_further(
-    attribute: &Attribute,
-    place: &Place,
-    q_step: i32,
-    steps: u32,
-    inset: Option<u32>,
-    line: &mut Linear,
-) {
-    level(attribute, place, q_step, steps, inset, line);
 }
 
 /// Sets an attribute's line in 1/w, shifted left by `up`; of a triangle that is no sliver, where the horizon is near
