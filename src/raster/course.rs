@@ -279,7 +279,8 @@ mod tests {
             let (u, w) = (at.map(|at| f64::from(at) / 65536.0), q.map(f64::from));
             let linear = through(&corners, u);
             let steps = [1, 2].map(|i| (linear[i] * 65536.0).round() as i32);
-            let mut attribute = Attribute { range: span, ..Attribute::default() };
+            let mut attribute = Attribute::default();
+            attribute.range = span;
             attribute.plane = Plane { origin: (linear[0] * 65536.0).round() as i64 as u32, steps };
             let q_plane = through(&corners, w);
             let thinness = (f64::from(longest) * 16.0 / f64::from(area) * 4096.0).ceil() as u32;
