@@ -75,7 +75,9 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         band: &'a mut Band<'b, F, D>,
     ) -> Self {
         let needs = look.needs(kind, fog.is_some());
-        Self { look, fog, band, window, needs, prepared: Prepared::new() }
+        let mut raster = Self { look, fog, band, window, needs, prepared: Prepared::new() };
+        raster.prepared.setup.forget_longest();
+        raster
     }
 
     /// The same for another surface, perhaps in fog, and window.

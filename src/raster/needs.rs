@@ -146,18 +146,26 @@ impl Needs {
     #[inline(never)]
     pub(super) fn scale_for(&self, vertices: &[&ScreenVertex; 3], scaling: &mut Scaling) {
         let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        *scaling = self.scaled([0, 1].map(|i| {
+        let finer = [0, 1].map(|i| {
             let size =
                 (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
             // Differences stay below 2²⁹.
             size.leading_zeros().saturating_sub(3).min(self.scale.into()) as u8
-        }));
+        });
+        self.set_scaled(finer, scaling);
     }
 
-    #[inline(never)]
+    #[inline]
     fn scaled(&self, finer: [u8; 2]) -> Scaling {
-        let rest = finer.map(|finer| self.scale - finer);
-        Scaling::new(finer, rest, &self.unscaled_packing)
+        let mut scaling = Scaling::default();
+        self.set_scaled(finer, &mut scaling);
+        scaling
+    }
+
+    /// In place, so that nothing is copied.
+    #[inline(never)]
+    fn set_scaled(&self, finer: [u8; 2], to: &mut Scaling) {
+        *to = Scaling::new(finer, finer.map(|finer| self.scale - finer), &self.unscaled_packing);
     }
 
     /// Hands on the attributes in use, with the corners' values in I16F16 and what is left of the scale, as log₂, until one returns

@@ -26,7 +26,7 @@ pub(super) const LARGE: u8 = 15;
 
 /// How far texture coordinates may be off in the runs of one shader. All lengths are in I16F16, before coordinates are scaled
 /// by `Attribute::scale_log2`. If they are not packed the unit is 1, and no error adds up.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Packing {
     /// Log₂ of the larger one of the units of u and v, I16F16.
     unit_log2: u8,

@@ -8,6 +8,7 @@ use super::packing::Packing;
 use crate::geometry::ScreenVertex;
 
 /// How u and v of one triangle are scaled. A scale multiplies by 2^0 … 2^8.
+#[derive(Default)]
 pub(crate) struct Scaling {
     /// Log₂ of what u and v are multiplied by before planes are made of them.
     finer: [u8; 2],

@@ -72,7 +72,7 @@ impl TriangleSetup {
             is_extreme: false,
             z: Plane::default(),
             bends: [[0; 3]; 2],
-            longest: STRAIGHT,
+            longest: 0,
             is_level: false,
             q_step_zeros: 0,
             q_rises: false,
@@ -80,7 +80,7 @@ impl TriangleSetup {
         }
     }
 
-    /// Before another shader's triangles, which may not read u and v.
+    /// Before a shader's triangles, which may not read u and v.
     pub(crate) fn forget_longest(&mut self) {
         self.longest = STRAIGHT;
     }
