@@ -13,6 +13,7 @@
 //! With 8 fraction bits steps are cut towards zero. So after 16 pixels of a straight line a channel is off by at most 1/16 of
 //! 1/255, its unit. That is how long a line may be before it starts anew.
 
+use super::curve::Linear;
 use super::fill::Steps;
 use super::packed::shifted;
 use crate::frame::PixelFormat;
@@ -53,14 +54,17 @@ pub(crate) trait Channels<const M: usize>: Steps {
         step
     }
 
+    /// The lines of a colour in 8 integer and 24 fraction bits, scaled likewise; at `t` it is a colour.
+    #[inline]
+    fn scaled_lines<F: PixelFormat>(lines: [Linear; M], _t: u32) -> [Linear; M] {
+        lines
+    }
+
     /// Red, green and blue, 0 … 255, from 8 integer and 24 fraction bits.
     fn rgb_modular(channels: [u32; M]) -> [u32; 3];
 
-    /// The word of a pixel, from 8 integer and 24 fraction bits.
-    #[inline]
-    fn word_modular<F: PixelFormat>(channels: [u32; M]) -> F::Word {
-        color::<F>(Self::rgb_modular(channels))
-    }
+    /// The word of a pixel, from 8 integer and 24 fraction bits that are [scaled](Channels::scaled_lines).
+    fn word_modular<F: PixelFormat>(channels: [u32; M]) -> F::Word;
 
     /// Red, green and blue, 0 … 255.
     fn rgb(self) -> [u32; 3];
@@ -73,13 +77,17 @@ pub(crate) trait Channels<const M: usize>: Steps {
 /// channel of 256.
 #[inline]
 fn scaled(channel: i32, bits: u32) -> i32 {
-    // The halves lie in the middle of those that are right for all whole channels.
-    scaled_step(channel, bits)
-        + match bits {
-            5 => 261_244,
-            6 => 130_684,
-            _ => 0,
-        }
+    scaled_step(channel, bits) + half(bits)
+}
+
+/// Half a step, I16F16: in the middle of those that are right for all whole channels.
+#[inline]
+fn half(bits: u32) -> i32 {
+    match bits {
+        5 => 261_244,
+        6 => 130_684,
+        _ => 0,
+    }
 }
 
 /// A step of it. Within 0.00011 of it, for a bit less work than a product.
@@ -167,6 +175,21 @@ impl Channels<3> for RedBlueGreen {
     #[inline]
     fn rgb_modular(channels: [u32; 3]) -> [u32; 3] {
         channels.map(|channel| channel >> 24)
+    }
+
+    #[inline]
+    fn scaled_lines<F: PixelFormat>(lines: [Linear; 3], t: u32) -> [Linear; 3] {
+        core::array::from_fn(|i| {
+            let (color, slope) = (lines[i].value(t), scaled_step(lines[i].slope, F::BITS[i]));
+            let less = if F::BITS[i] < 8 { (color >> F::BITS[i]) - (color >> 8) } else { 0 };
+            let color = color - less + ((half(F::BITS[i]) as u32) << 8);
+            Linear { at: color.wrapping_sub(t.wrapping_mul(slope as u32)), slope }
+        })
+    }
+
+    #[inline]
+    fn word_modular<F: PixelFormat>(channels: [u32; 3]) -> F::Word {
+        F::cut(Self::rgb_modular(channels))
     }
 
     #[inline]

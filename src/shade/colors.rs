@@ -7,6 +7,7 @@
 use super::channels::Channels;
 use super::curve::{Curve, Ts};
 use super::fill::{Fill, FillRow, draw_row, some_of};
+use super::inverses::ONE_LOG2;
 use super::units::Units;
 use crate::frame::PixelFormat;
 use core::hint::black_box;
@@ -33,7 +34,8 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Colors<M, F, C> {
     /// With t at every pixel.
     #[inline(always)]
     fn each<const CHORDS: bool>(pixels: &mut [F::Word], curve: &Curve, mut ts: Ts<CHORDS>) {
-        let lines = some_of::<M, _>(&curve.lines, 0);
+        // Where w or n begins.
+        let lines = C::scaled_lines::<F>(some_of(&curve.lines, 0), if CHORDS { 0 } else { 1 << ONE_LOG2 });
         for pixel in pixels {
             let t = ts.next();
             *pixel = C::word_modular::<F>(lines.map(|line| line.value(t)));

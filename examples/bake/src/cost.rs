@@ -14,17 +14,17 @@ pub type Cycles = [f64; 2];
 /// Views of a turntable that are averaged.
 const VIEWS: u32 = 8;
 
-const CALL: Cycles = [10311.0, 5784.0];
-const CALL_LIT: Cycles = [12247.0, 7002.0];
-const VERTEX: Cycles = [278.0, 161.0];
-const VERTEX_LIT: Cycles = [147.0, 113.0];
-const CULLED: Cycles = [143.0, 92.0];
+const CALL: Cycles = [10552.0, 5484.0];
+const CALL_LIT: Cycles = [12109.0, 6309.0];
+const VERTEX: Cycles = [277.0, 157.0];
+const VERTEX_LIT: Cycles = [145.0, 116.0];
+const CULLED: Cycles = [141.0, 86.0];
 /// A triangle of 1 pixel, one of 21 pixels in 6 rows: flat, Gouraud, textured, texture × light.
 const TRIANGLES: [[Cycles; 2]; 4] = [
-    [[1153.0, 767.0], [1560.0, 1052.0]],
-    [[2487.0, 1655.0], [3679.0, 2470.0]],
-    [[2500.0, 1646.0], [3951.0, 2585.0]],
-    [[2896.0, 1916.0], [5352.0, 3406.0]],
+    [[1164.0, 778.0], [1570.0, 1063.0]],
+    [[2446.0, 1636.0], [3688.0, 2534.0]],
+    [[2444.0, 1610.0], [3736.0, 2552.0]],
+    [[2779.0, 1817.0], [5180.0, 3139.0]],
 ];
 /// A row and a pixel more of a small triangle.
 const SMALL_ROW: Cycles = [130.0, 80.0];
@@ -36,16 +36,16 @@ const BENT_ROW: Cycles = [160.0, 100.0];
 const BENT_SHARE: f64 = 1.0 / 3.0;
 /// A row and a pixel of a large one, of a floor with depth: flat, Gouraud, textured, texture × light; clamped as repeated.
 const LARGE: [[Cycles; 2]; 4] = [
-    [[234.0, 180.0], [12.4, 9.8]],
-    [[840.0, 585.0], [34.8, 22.5]],
-    [[786.0, 531.0], [20.0, 15.8]],
-    [[1023.0, 730.0], [55.0, 34.8]],
+    [[234.0, 179.0], [12.4, 9.8]],
+    [[847.0, 576.0], [34.9, 22.5]],
+    [[764.0, 510.0], [20.0, 15.9]],
+    [[1043.0, 715.0], [63.0, 38.9]],
 ];
 /// The same cut out by a mask, or with alpha: flat, textured; texture × light.
-const MASKED: [Cycles; 2] = [[198.0, 151.0], [228.9, 142.5]];
-const FLAT_ALPHA: [Cycles; 2] = [[291.0, 236.0], [92.7, 48.9]];
-const ALPHA: [Cycles; 2] = [[292.0, 236.0], [115.3, 64.1]];
-const LIT_ALPHA: [Cycles; 2] = [[292.0, 236.0], [157.7, 89.3]];
+const MASKED: [Cycles; 2] = [[199.0, 151.0], [229.1, 142.4]];
+const FLAT_ALPHA: [Cycles; 2] = [[292.0, 236.0], [92.7, 48.9]];
+const ALPHA: [Cycles; 2] = [[294.0, 236.0], [114.6, 63.5]];
+const LIT_ALPHA: [Cycles; 2] = [[294.0, 236.0], [166.3, 92.9]];
 /// What a row of a small triangle takes more that is not opaque.
 const ROW_OF_SMALL: Cycles = [600.0, 400.0];
 

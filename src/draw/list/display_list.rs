@@ -43,7 +43,7 @@ use heapless::{Vec, VecView};
 /// the list. They are sorted by one number, near/w in their middle: long ones that lie across each other want to be cut into pieces.
 /// Cameras of other near planes do not compare: draw a transparent overlay from a list of its own, after the scene's.
 ///
-/// A draw takes 156 bytes, besides, on a chip with pointers of 32 bits. [`memory`](crate::guide::memory) has a recipe for all of it.
+/// A draw takes 148 bytes, besides, on a chip with pointers of 32 bits. [`memory`](crate::guide::memory) has a recipe for all of it.
 ///
 /// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order.
 /// Rendering takes `&self`, and a list is `Send` and `Sync`: two cores can render two bands.
