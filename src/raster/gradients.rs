@@ -17,7 +17,7 @@
 use super::packing::PACKED_MARGIN;
 use super::plane::Plane;
 use crate::math::recip::short_of;
-use crate::num::mul_17;
+use crate::num::{IS_ARMV6M, mul_17};
 
 /// What all planes of a triangle have in common.
 pub(super) struct Gradients {
@@ -93,8 +93,23 @@ impl Gradients {
     /// Sets the plane of an attribute from its value at corner 0 and the rises to corners 1 and 2, in units of 2⁸ of the plane's, so that
     /// it stays a `margin` inside its range at the corners. Where there is no room for that it is the middle of the range, all over: or
     /// of the texel that this is in. Returns the least value, less that at corner 0, and the range; from 2¹⁹ on no plane is set.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn set_within(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> (i32, i32) {
+        if IS_ARMV6M {
+            self.set_within_apart(plane, at, rises, margin)
+        } else {
+            // 12 cycles less on a Cortex-M4.
+            self.set_within_here(plane, at, rises, margin)
+        }
+    }
+
+    #[inline(never)]
+    fn set_within_apart(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> (i32, i32) {
+        self.set_within_here(plane, at, rises, margin)
+    }
+
+    #[inline(always)]
+    fn set_within_here(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> (i32, i32) {
         let [mut b, mut c] = *rises;
         let (least, greatest) = (b.min(c).min(0), b.max(c).max(0));
         if greatest - least >= 1 << 19 {
