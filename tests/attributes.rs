@@ -333,6 +333,31 @@ fn quarter_pixel_holds_for_30_000_triangles_of_a_mesh() {
     hold_in_meshes::<QuarterPixel>("QuarterPixel", 0.25);
 }
 
+/// Texture coordinates that differ by so few last bits that a small triangle has no room for a margin inside their range, or not at all.
+#[test]
+fn coordinates_that_hardly_change_stay_in_range_in_4_000_triangles() {
+    fn hold<Q: Quality>() {
+        let bits = prop::array::uniform3(prop::array::uniform2(prop_oneof![Just(0), 0..3_i32, 0..3_000_i32]));
+        let base = prop::array::uniform2(prop_oneof![
+            Just(0),
+            -70_000..70_000_i32,
+            any::<i16>().prop_map(i32::from)
+        ]);
+        let cases = (0..FAMILIES.len(), 1..RATIOS.len())
+            .prop_flat_map(|(family, ratio)| case(FAMILIES[family], RATIOS[ratio]));
+        for_all("hardly changing", 2_000, (cases, base, bits), |(mut case, base, bits)| {
+            for (corner, bits) in case.triangle.0.iter_mut().zip(bits) {
+                for i in 0..2 {
+                    corner.attributes[i] = base[i] + bits[i];
+                }
+            }
+            measure::<Q>(&case, within(1.0)).map(|_| ()).map_err(TestCaseError::fail)
+        });
+    }
+    hold::<QuarterPixel>();
+    hold::<Exact>();
+}
+
 /// Rows of few pixels at one distance each, across which all texels there are go by: a wall's far end, seen from its side.
 fn steep_and_level() -> impl Strategy<Value = Case> {
     let widths = prop_oneof![2 => 8..48_i32, 1 => 8..400_i32];

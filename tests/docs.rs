@@ -132,7 +132,7 @@ fn the_recipe_for_ram_adds_up() {
         let (screen, buffers) = (numbers(screen), numbers(buffers));
         let bands = screen[0] * numbers(height)[0] * 2 * (buffers[0] + buffers[1]);
         let list = match numbers(capacity)[..] {
-            [v, t, n] => memory(v, t, 4) + 32 + 156 * n,
+            [v, t, n] => memory(v, t, 4) + 32 + 148 * n,
             _ => 0,
         };
         assert_eq!(numbers(bytes), [bands + list], "{line}");
