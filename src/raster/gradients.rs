@@ -14,7 +14,7 @@
 //! slope for each column and row from corner 0: no more than 64 units of the plane in all, since where the slope's unit is larger
 //! (the area has more than 20 leading zeros) the triangle is smaller by as much, or else too thin. And 24 units for the origin.
 
-use super::packing::PACKED_MARGIN;
+use super::packing::{PACKED_MARGIN, PLANE_MARGIN};
 use super::plane::Plane;
 use crate::math::recip::short_of;
 use crate::num::{IS_ARMV6M, mul_17};
@@ -92,7 +92,8 @@ impl Gradients {
 
     /// Sets the plane of an attribute from its value at corner 0 and the rises to corners 1 and 2, in units of 2⁸ of the plane's, so that
     /// it stays a `margin` inside its range at the corners. Where there is no room for that it is the middle of the range, all over: or
-    /// of the texel that this is in. Returns the least value, less that at corner 0, and the range; from 2¹⁹ on no plane is set.
+    /// of the texel that this is in. Returns the least value, less that at corner 0, and the range; from 2¹⁹ on no plane is set. Nor is it
+    /// where a texture coordinate that is not packed has no room: its last bits, which are left out here, are all that it has.
     #[inline(always)]
     pub(super) fn set_within(&self, plane: &mut Plane, at: i32, rises: &[i32; 2], margin: i32) -> (i32, i32) {
         if IS_ARMV6M {
@@ -124,6 +125,8 @@ impl Gradients {
             (b, c) = (0, 0);
             if margin >= i32::from(PACKED_MARGIN) {
                 first = ((at + first) & !0xff) + 0x80 - at;
+            } else if margin == i32::from(PLANE_MARGIN) {
+                return (least, i32::MAX);
             }
         }
         self.set(plane, ((at + first) << 8) as u32, [b, c]);

@@ -45,7 +45,7 @@
 
 use super::gradients::Gradients;
 use super::needs::{ColorBend, Needs, SmallTriangle};
-use super::packing::{LARGE, PLANE_MARGIN};
+use super::packing::LARGE;
 use super::straight::Straight;
 use super::triangle::{STRAIGHT, TriangleSetup};
 use crate::geometry::ScreenVertex;
@@ -141,13 +141,6 @@ impl TriangleSetup {
                 gradients.set_within(&mut attribute.plane, a >> 8, &rises, needs.margins[i].into());
             if range >= 1 << 19 {
                 return false;
-            }
-            if range < 2 * i32::from(PLANE_MARGIN) && needs.margins[i] == PLANE_MARGIN {
-                // The same all over, and never below the least, whose last bits were left out.
-                let [a, b, c] = vertices.map(|vertex| needs.scaled_uv(vertex, i));
-                let least = a.wrapping_add(b.wrapping_sub(a).min(c.wrapping_sub(a)).min(0)) as u32;
-                let origin = &mut attribute.plane.origin;
-                *origin = least.wrapping_add_signed((origin.wrapping_sub(least) as i32).max(0));
             }
             // For what asks where a texture is seen.
             attribute.set_scale_log2(0);
