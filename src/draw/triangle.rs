@@ -76,6 +76,7 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     ) -> Self {
         let needs = look.needs(kind, fog.is_some());
         let mut raster = Self { look, fog, band, window, needs, prepared: Prepared::new() };
+        // Here: inside of `new` it would split what is set to zero, and link two more routines.
         raster.prepared.setup.forget_longest();
         raster
     }

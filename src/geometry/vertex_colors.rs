@@ -39,7 +39,7 @@ pub(crate) struct VertexColors<'p> {
 
 /// Light as it falls on one mesh.
 #[derive(Debug)]
-// In this order, likewise.
+// In this order, for short instructions, as `Lighting`.
 #[repr(C)]
 pub(super) struct Light<'p> {
     shading: &'static Shading,

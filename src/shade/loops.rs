@@ -29,7 +29,7 @@
 
 use super::curve::{CHORD, Chords, Curve, Linear};
 use super::fill::{draw_row, plus};
-use super::packed::{downs, lines_of, packed_from, packed_step, shifted, sized, turned};
+use super::packed::{downs, lines_of, packed_from, packed_step, shifted, sized, squared, turned};
 use super::passes::{at_once, leave_apart, leave_ts, second_pass};
 use crate::frame::PixelFormat;
 use crate::num::IS_ARMV6M;
@@ -206,7 +206,7 @@ impl Loops<'_> {
         let (eights, last) = eights_and_last(pixels);
         // 4096 texels that are packed and not large are a square.
         if let Known::Of64x64(texels) = self.known {
-            let texel = of_64x64(self.texture, texels);
+            let texel = squared::<6, _>(self.texture, texels);
             for eight in eights {
                 let [mut packed, step] = nodes.next();
                 for pixel in eight {
@@ -224,7 +224,7 @@ impl Loops<'_> {
         let [packed, step] = nodes.last((last.len() as u32).wrapping_sub(1));
         match self.known {
             Known::Of64x64(texels) => {
-                let texel = of_64x64(self.texture, texels);
+                let texel = squared::<6, _>(self.texture, texels);
                 draw_row(last, packed, step, |packed| F::rgb565(texel(packed)));
             }
             _ => self.line::<F>(last, packed, step),
@@ -340,15 +340,6 @@ impl Loops<'_> {
 #[inline(never)]
 fn line_of_1024<F: PixelFormat>(texel: impl Fn(u32) -> u16, pixels: &mut [F::Word], packed: u32, step: u32) {
     draw_row(pixels, packed, step, |packed| F::rgb565(texel(packed)));
-}
-
-/// [`sized`] of a texture that is a square. On a Cortex-M4 its numbers are best constants, 10 cycles a chord less; on Armv6-M
-/// they need registers anyhow.
-#[inline(always)]
-fn of_64x64(texture: &Texture<'_>, texels: &[u16; 0x1000]) -> impl Fn(u32) -> u16 {
-    let [mask, multiplier] =
-        if IS_ARMV6M { texture.mask_and_multiplier() } else { [0xfc00_fc00, (1 << 10) + 1] };
-    move |packed| texels[((packed & mask).wrapping_mul(multiplier) >> 20) as usize]
 }
 
 /// The pixels of a run's chords, and 1 to 8 of the last one, whose end is the run's.
