@@ -11,7 +11,7 @@
 
 use super::rows::centers_left;
 use crate::frame::{Window, first_center};
-use crate::geometry::{MOST_CORNERS, ScreenVertex, piece, position};
+use crate::geometry::{MOST_CORNERS, ScreenVertex, piece};
 use core::ops::Range;
 
 /// The rows of a window in which a folded polygon has pixel centres.
@@ -124,11 +124,12 @@ fn set_sides(sides: &mut [[i32; 2]], polygon: &[ScreenVertex], row: i32) {
 /// does: then there is none in the other direction either.
 #[inline(never)]
 fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
-    let [a, b, c] = corners.map(position);
-    for [from, to] in [[a, b], [b, c], [c, a]] {
+    let row_of = |vertex: &ScreenVertex| first_center(vertex.y.to_bits().into());
+    for i in 0..3 {
+        let [from, to] = [corners[i], corners[if i < 2 { i + 1 } else { 0 }]];
         let [top, bottom] = if upwards { [to, from] } else { [from, to] };
-        if first_center(top[1]) <= row && row < first_center(bottom[1]) {
-            return centers_left(&top, &bottom, row);
+        if row_of(top) <= row && row < row_of(bottom) {
+            return centers_left(top, bottom, row);
         }
     }
     0
@@ -137,7 +138,7 @@ fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Cull, area, polygon};
+    use crate::geometry::{Cull, area, polygon, position};
     use std::vec::Vec;
 
     /// How often a polygon goes around a pixel's centre, clockwise, by the edges that cross the row left of it; and the

@@ -31,6 +31,7 @@ impl TriangleSetup {
         if needs.scale != 0 && !needs.are_narrow(vertices) {
             return false;
         }
+        self.set_corners(vertices);
         (self.is_held, self.longest) = (true, STRAIGHT);
         if needs.reads_color() {
             self.set_gray(vertices, needs.gray);
@@ -112,6 +113,7 @@ impl TriangleSetup {
             return false;
         };
         let rises_of_q = [fall.rise(q[0], q[1]), fall.rise(q[0], q[2])];
+        self.set_corners(vertices);
         self.is_bent = true;
         // Over L steps of a row a straight line is off from the quadratic by ¼·L²·|∇u·∇q|/q_mid, with both along the row. In
         // pixels that is at most ¼·L²·|∇q|/q_mid: 3/32 at most.
@@ -176,7 +178,7 @@ impl TriangleSetup {
     #[inline]
     fn beyond_corner(&self, [x, y]: [i32; 2]) -> [i32; 2] {
         let [corner_x, corner_y] = self.corners[0];
-        [x - (corner_x >> 4), y - (corner_y >> 4)]
+        [x - i32::from(corner_x >> 4), y - i32::from(corner_y >> 4)]
     }
 }
 

@@ -58,7 +58,7 @@ impl TriangleSetup {
             self.lean(vertices, scaling, if bits < 0 { (5 << (-bits & 31)) >> 2 } else { 1 }, i32::MAX);
         } else {
             let all = (0..2).fold(2, |all, axis| {
-                let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+                let [a, b, c] = self.corners.map(|corner| i32::from(corner[axis] >> 4));
                 all + a.max(b).max(c) - a.min(b).min(c)
             });
             self.lean(vertices, scaling, 0, 21 + ((width + height) >> 2) + ((3 * all) >> (bits + 1)));
@@ -99,7 +99,7 @@ impl TriangleSetup {
         most: i32,
     ) -> u32 {
         let direction =
-            direction(&edges(&self.corners), [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])]);
+            direction(&edges(&self.corners()), [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])]);
         let attribute = &mut self.attributes[i];
         if direction == 0 {
             // Constant. v is put in the middle of its texel if carries can move it.
@@ -112,7 +112,7 @@ impl TriangleSetup {
         let mut behind = most;
         if !self.sliver {
             let mut snapped = plane;
-            snapped.snap(&self.corners[0], slack, self.is_small);
+            snapped.snap(self.corners[0], slack, self.is_small);
             let [mut errors, by_snapped] =
                 [plane, snapped].map(|plane| plane.errors(&self.corners, at, attribute.least));
             // Whichever has errors closer together.

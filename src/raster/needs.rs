@@ -18,7 +18,7 @@ use core::fmt;
 /// The functions that set up what a shader reads.
 pub(crate) struct InputCode {
     pub(crate) inputs: Inputs,
-    /// All planes of a small triangle whose corners are set, and twice its area given. False, and they are of no use, if the general way has to.
+    /// All planes of a small triangle, twice its area given. False, and they are of no use, if the general way has to.
     pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs) -> bool,
     /// All planes of any triangle, the nearest vertex of which is first.
     pub(super) any: fn(&mut TriangleSetup, &Oriented<'_>, &Needs),

@@ -38,13 +38,13 @@ impl Plane {
     ///
     /// Sprites have such steps: a whole texel per pixel, a half or a quarter. If rounding left one a unit too small, packed
     /// coordinates, which cut steps to *their* unit, would lose one of theirs at every pixel.
-    pub(super) fn snap(&mut self, corner: &[i32; 2], error: u32, is_small: bool) {
+    pub(super) fn snap(&mut self, corner: [i16; 2], error: u32, is_small: bool) {
         for (step, at) in self.steps.iter_mut().zip(corner) {
             let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
             let error = error + if is_small { step.unsigned_abs() >> 16 } else { 0 };
             if change.unsigned_abs() <= error {
                 *step = step.wrapping_add(change);
-                self.origin = self.origin.wrapping_sub((at >> 4).wrapping_mul(change) as u32);
+                self.origin = self.origin.wrapping_sub(i32::from(at >> 4).wrapping_mul(change) as u32);
             }
         }
     }
@@ -53,10 +53,11 @@ impl Plane {
     /// none is positive. The plane is one of u − `least`; `values` are the right u at the corners, whose positions are in
     /// 1/16 px.
     #[inline(never)]
-    pub(super) fn errors(&self, corners: &[[i32; 2]; 3], values: &[i32; 3], least: i32) -> [i32; 2] {
+    pub(super) fn errors(&self, corners: &[[i16; 2]; 3], values: &[i32; 3], least: i32) -> [i32; 2] {
         let [right, down] = self.steps;
         let mut errors = [0; 2];
-        for ([x, y], value) in corners.iter().zip(values) {
+        for (&[x, y], value) in corners.iter().zip(values) {
+            let (x, y) = (i32::from(x), i32::from(y));
             // From the centre of pixel (0, 0), 16 times.
             let way = right.wrapping_mul(x - 8).wrapping_add(down.wrapping_mul(y - 8));
             let error =

@@ -8,7 +8,7 @@ use super::needs::Needs;
 use super::rows::{Rows, Small};
 use super::triangle::TriangleSetup;
 use crate::frame::Window;
-use crate::geometry::{Oriented, position};
+use crate::geometry::Oriented;
 use core::hint::black_box;
 
 /// Rows and planes. One serves all triangles of a draw, one after another.
@@ -38,7 +38,7 @@ impl Prepared {
         } else {
             black_box([c, a, b])
         };
-        match self.rows.start_small(&from_top, window, &mut self.setup.corners) {
+        match self.rows.start_small(&from_top, window) {
             Small::Hidden => false,
             Small::Rows if (needs.code.small)(&mut self.setup, &from_top, triangle.area, needs) => true,
             other => self.set_any(triangle, window, needs, matches!(other, Small::Not)),
@@ -49,8 +49,7 @@ impl Prepared {
     #[cold]
     #[inline(never)]
     fn set_any(&mut self, triangle: &Oriented<'_>, window: &Window, needs: &Needs, is_large: bool) -> bool {
-        self.setup.corners = triangle.vertices.map(position);
-        if is_large && !self.rows.start_long(&self.setup.corners, window) {
+        if is_large && !self.rows.start_long(&triangle.vertices, window) {
             return false;
         }
         (needs.code.any)(&mut self.setup, &triangle.nearest_first(), needs);

@@ -30,7 +30,6 @@ use super::spans::{SmallEdges, Spans};
 use crate::frame::{Window, first_center};
 use crate::geometry::{ScreenVertex, position};
 use crate::math::recip::Reciprocal;
-use core::ops::Range;
 
 /// An edge, in one row after another: how many pixel centres lie to its left, as quotient and remainder.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,9 +48,10 @@ struct Edge {
 }
 
 impl Edge {
-    /// Sets an edge from `top` down to `bottom`, both in 1/16 px, at `row`, whose centres lie between them.
+    /// Sets an edge from `top` down to `bottom`, at `row`, whose centres lie between them.
     #[inline(never)]
-    fn set(&mut self, top: &[i32; 2], bottom: &[i32; 2], row: i32) {
+    fn set(&mut self, top: &ScreenVertex, bottom: &ScreenVertex, row: i32) {
+        let [top, bottom] = [top, bottom].map(position);
         let (dx, dy) = (bottom[0] - top[0], bottom[1] - top[1]);
         let divisor = 16 * dy;
         let reciprocal = Reciprocal::precise(divisor as u32);
@@ -106,7 +106,7 @@ pub(crate) struct LongRows {
     /// The row of the middle corner, at most `end`. There `lower` takes the place of the edge that ends.
     knee: i32,
     /// The end of the rows (exclusive).
-    end: i32,
+    end: i16,
     /// The edge that begins at the knee.
     lower: Edge,
     lower_is_right: bool,
@@ -116,14 +116,9 @@ impl Rows {
     /// Of no triangle.
     pub(crate) const NONE: Self = Self::Short(Spans::NONE);
 
-    /// Starts a triangle if it is small, from its uppermost corner on, and sets its corners.
+    /// Starts a triangle if it is small, from its uppermost corner on.
     #[inline(never)]
-    pub(super) fn start_small(
-        &mut self,
-        vertices: &[&ScreenVertex; 3],
-        window: &Window,
-        corners: &mut [[i32; 2]; 3],
-    ) -> Small {
+    pub(super) fn start_small(&mut self, vertices: &[&ScreenVertex; 3], window: &Window) -> Small {
         let at = vertices.map(position);
         let Some(edges) = SmallEdges::of(at) else {
             return Small::Not;
@@ -134,14 +129,13 @@ impl Rows {
         let Self::Short(spans) = self else {
             return Small::Not;
         };
-        *corners = at;
         if spans.start(&edges, window) { Small::Rows } else { Small::Hidden }
     }
 
     /// Starts a triangle of any size, whose corners run clockwise. False if it has no rows, or only one, and that is empty. (True
     /// does not mean that a pixel is covered.)
     #[inline(never)]
-    pub(crate) fn start_long(&mut self, corners: &[[i32; 2]; 3], window: &Window) -> bool {
+    pub(super) fn start_long(&mut self, corners: &[&ScreenVertex; 3], window: &Window) -> bool {
         if let Self::Short(_) = self {
             *self = Self::Long(LongRows::default());
         }
@@ -169,10 +163,10 @@ impl Rows {
 impl LongRows {
     /// As [`Rows::start_long`].
     #[inline(never)]
-    fn start(&mut self, [a, b, c]: &[[i32; 2]; 3], window: &Window) -> bool {
-        if a[1] <= b[1] && a[1] <= c[1] {
+    fn start(&mut self, [a, b, c]: &[&ScreenVertex; 3], window: &Window) -> bool {
+        if a.y <= b.y && a.y <= c.y {
             self.start_at(a, b, c, window);
-        } else if b[1] <= c[1] {
+        } else if b.y <= c.y {
             self.start_at(b, c, a, window);
         } else {
             self.start_at(c, a, b, window);
@@ -182,37 +176,41 @@ impl LongRows {
 
     /// Starts a triangle at its uppermost corner `top`. From there a right edge leads down to `next` and a left one to `last`.
     #[inline(never)]
-    fn start_at(&mut self, top: &[i32; 2], next: &[i32; 2], last: &[i32; 2], window: &Window) {
-        let (next_row, last_row) = (first_center(next[1]), first_center(last[1]));
-        let Range { start, end } = window.columns;
-        self.row = first_center(top[1]).max(window.rows.start);
-        self.end = next_row.max(last_row).min(window.rows.end);
+    fn start_at(&mut self, top: &ScreenVertex, next: &ScreenVertex, last: &ScreenVertex, window: &Window) {
+        let row_of = |vertex: &ScreenVertex| first_center(vertex.y.to_bits().into());
+        let (next_row, last_row) = (row_of(next), row_of(last));
+        let (row, mut end) =
+            (row_of(top).max(window.rows.start), next_row.max(last_row).min(window.rows.end));
         // No rows if all columns lie beyond the same side.
-        let columns = [top, next, last].map(|corner| first_center(corner[0]));
-        if columns.iter().all(|&column| column >= end) || columns.iter().all(|&column| column < start) {
-            self.end = self.row;
+        let columns = [top, next, last].map(|corner| first_center(corner.x.to_bits().into()));
+        let window = &window.columns;
+        if columns.iter().all(|&column| column >= window.end)
+            || columns.iter().all(|&column| column < window.start)
+        {
+            end = row;
         }
-        if self.row >= self.end {
+        (self.row, self.end) = (row, end as i16);
+        if row >= end {
             return;
         }
-        if next_row > self.row {
-            self.right.set(top, next, self.row);
+        if next_row > row {
+            self.right.set(top, next, row);
         }
-        if last_row > self.row {
-            self.left.set(top, last, self.row);
+        if last_row > row {
+            self.left.set(top, last, row);
         }
         self.lower_is_right = next_row < last_row;
-        self.knee = next_row.min(last_row).min(self.end);
-        if self.knee < self.end {
+        self.knee = next_row.min(last_row).min(end);
+        if self.knee < end {
             let (from, to) = if self.lower_is_right { (next, last) } else { (last, next) };
-            self.lower.set(from, to, self.knee.max(self.row));
+            self.lower.set(from, to, self.knee.max(row));
         }
     }
 
     /// A quick test for triangles that cover no pixel of a band: whether there are no rows, or only one, and that is empty.
     fn are_none(&self) -> bool {
-        self.row >= self.end
-            || self.row + 1 == self.end && self.end <= self.knee && self.left.x >= self.right.x
+        let end = i32::from(self.end);
+        self.row >= end || self.row + 1 == end && end <= self.knee && self.left.x >= self.right.x
     }
 
     /// The next row, and its span's start and end (exclusive), clipped to the window. The span may be empty.
@@ -230,19 +228,20 @@ impl LongRows {
     /// Lets the edge that begins at the knee take the place of the one that ends there. False at the end of the rows.
     #[inline(never)]
     fn reach_knee(&mut self) -> bool {
-        if self.row >= self.end {
+        let end = i32::from(self.end);
+        if self.row >= end {
             return false;
         }
         let edge = if self.lower_is_right { &mut self.right } else { &mut self.left };
         *edge = self.lower;
-        self.knee = self.end;
+        self.knee = end;
         true
     }
 }
 
-/// How many pixel centres of a row lie left of an edge, `top` above `bottom` (1/16 px) and the row between them.
+/// How many pixel centres of a row lie left of an edge, `top` above `bottom` and the row between them.
 #[cold]
-pub(super) fn centers_left(top: &[i32; 2], bottom: &[i32; 2], row: i32) -> i32 {
+pub(super) fn centers_left(top: &ScreenVertex, bottom: &ScreenVertex, row: i32) -> i32 {
     let mut edge = Edge::default();
     edge.set(top, bottom, row);
     edge.x

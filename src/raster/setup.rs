@@ -56,7 +56,7 @@ use super::scaling::Scaling;
 use super::slopes::Slopes;
 use super::straight::{Bend, Straight};
 use super::triangle::{TriangleSetup, edges};
-use crate::geometry::{Oriented, position};
+use crate::geometry::Oriented;
 use crate::math::recip::Reciprocal;
 use crate::num::{normalise, shift_round_short, wide};
 
@@ -68,7 +68,7 @@ impl TriangleSetup {
     #[inline(never)]
     pub(super) fn set<const READS: bool>(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
         let vertices = &triangle.vertices;
-        self.corners = vertices.map(position);
+        self.set_corners(vertices);
         (self.is_small, self.sliver, self.leans, self.straight) = (false, false, false, true);
         if !READS && !needs.depth {
             return;
@@ -148,7 +148,7 @@ impl TriangleSetup {
     /// Whether linear interpolation will do for all attributes, from q at the corners.
     #[inline]
     fn is_straight(&self, q: &[u32; 3], limit: u32) -> bool {
-        Bend::new(&edges(&self.corners), *q).is_some_and(|bend| bend.is_straight(limit))
+        Bend::new(&edges(&self.corners()), *q).is_some_and(|bend| bend.is_straight(limit))
     }
 
     /// What a row needs for perspective, besides planes and horizons: the step of q along it, normalised. Returns its reciprocal.

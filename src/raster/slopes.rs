@@ -32,7 +32,8 @@ impl Slopes {
     /// Not inlined: what it takes is not on the stack while planes are set.
     #[inline(never)]
     pub(super) fn new(setup: &TriangleSetup, area: u32) -> Self {
-        let (edges, a) = (edges(&setup.corners), setup.corners[0]);
+        let corners = setup.corners();
+        let (edges, a) = (edges(&corners), corners[0]);
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
         let (height, width) = (spread(edges[0]), spread(edges[1]));
         // The largest difference to 30 bits, times 1/area.

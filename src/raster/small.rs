@@ -48,10 +48,10 @@ use super::needs::{ColorBend, Needs, SmallTriangle};
 use super::packing::LARGE;
 use super::straight::Straight;
 use super::triangle::{STRAIGHT, TriangleSetup};
-use crate::geometry::ScreenVertex;
+use crate::geometry::{ScreenVertex, position};
 
 impl TriangleSetup {
-    /// Sets the plane of depth, and those of attributes if any is read, of a triangle whose corners are set: [`InputCode::small`](super::needs::InputCode).
+    /// Sets the plane of depth, and those of attributes if any is read, of a triangle: [`InputCode::small`](super::needs::InputCode).
     #[inline(never)]
     pub(super) fn set_small<const READS: bool>(
         &mut self,
@@ -59,7 +59,7 @@ impl TriangleSetup {
         area: u32,
         needs: &Needs,
     ) -> bool {
-        let [top @ [x, y], next, last] = self.corners;
+        let [top @ [x, y], next, last] = vertices.map(position);
         let ([bx, by], [cx, cy]) = ([next[0] - x, next[1] - y], [last[0] - x, last[1] - y]);
         self.is_small = true;
         (self.is_held, self.is_bent, self.sliver) = (false, false, false);

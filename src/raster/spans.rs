@@ -55,8 +55,8 @@ pub(crate) struct Spans {
     /// Of each row the first column and the end (exclusive), which may be less.
     table: [[u8; 2]; WIDEST],
     /// The screen's row and column from which the table counts. The column may be left of the screen.
-    pub(crate) row: i32,
-    pub(crate) column: i32,
+    pub(crate) row: i16,
+    pub(crate) column: i16,
     /// The rows of the table that lie in the window.
     start: u8,
     end: u8,
@@ -69,14 +69,15 @@ impl Spans {
     #[inline(always)]
     pub(crate) fn start(&mut self, edges: &SmallEdges, window: &Window) -> bool {
         let SmallEdges { top: [ax, ay], next: [bx, by], last: [cx, cy] } = *edges;
-        self.row = first_center(ay);
+        let (row, column) = (first_center(ay), (ax >> 4) - WIDEST as i32);
+        (self.row, self.column) = (row as i16, column as i16);
         // From the row's centre up to the corner.
-        let above = self.row * 16 + 8 - ay;
+        let above = row * 16 + 8 - ay;
         let rows_to = |y: i32| (y - above + 15) >> 4;
         let (mut first, mut next, mut last) = (0, rows_to(by), rows_to(cy));
         let (is_next_lower, is_last_lower) = (next > last, last > next);
         let mut end = next.max(last);
-        let (top, bottom) = (window.rows.start - self.row, window.rows.end - self.row);
+        let (top, bottom) = (window.rows.start - row, window.rows.end - row);
         if (-top | (bottom - end)) < 0 {
             first = top.max(0);
             end = end.min(bottom).max(first);
@@ -86,7 +87,6 @@ impl Spans {
         if first >= end {
             return false;
         }
-        self.column = (ax >> 4) - WIDEST as i32;
         let x = (ax & 15) + (WIDEST as i32 * 16 + 8);
         let corners = [[x, -above, first], [x + bx, by - above, next], [x + cx, cy - above, last]];
         side::<1>(&mut self.table, &corners[0], &corners[1]);
@@ -97,9 +97,7 @@ impl Spans {
             side::<0>(&mut self.table, &corners[2], &corners[1]);
         }
         // All columns lie within 32 pixels of the top.
-        if (self.column - window.columns.start) | (window.columns.end - self.column - 2 * WIDEST as i32 - 1)
-            < 0
-        {
+        if (column - window.columns.start) | (window.columns.end - column - 2 * WIDEST as i32 - 1) < 0 {
             return self.clip(window);
         }
         // One or two rows are empty as often as not, in a band. Of more it would take longer to ask than it saves.
@@ -116,7 +114,7 @@ impl Spans {
     #[cold]
     #[inline(never)]
     fn clip(&mut self, window: &Window) -> bool {
-        let within = |column: i32| (column - self.column).clamp(0, 255) as u8;
+        let within = |column: i32| (column - i32::from(self.column)).clamp(0, 255) as u8;
         let (left, right) = (within(window.columns.start), within(window.columns.end));
         let mut any = false;
         for [start, end] in
@@ -146,7 +144,8 @@ impl Spans {
     #[inline]
     pub(crate) fn on_screen(&self, row: usize) -> [i32; 3] {
         let [start, end] = self.span(row);
-        [self.row + row as i32, self.column + i32::from(start), self.column + i32::from(end)]
+        let (first, column) = (i32::from(self.row), i32::from(self.column));
+        [first + row as i32, column + i32::from(start), column + i32::from(end)]
     }
 
     /// With one row only.

@@ -49,12 +49,12 @@ pub struct TriangleSetup {
     pub(crate) attributes: [Attribute; ATTRIBUTES],
     /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
     /// triangle the uppermost.
-    pub(crate) corners: [[i32; 2]; 3],
+    pub(super) corners: [[i16; 2]; 3],
     /// 1 / (twice the area in 1/256 px²); not of small triangles.
     pub(super) area: Reciprocal,
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 240);
+const _: () = assert!(size_of::<TriangleSetup>() <= 228);
 
 impl TriangleSetup {
     /// Of no triangle. (One is used for all triangles of a draw: setting it to zero takes 240 cycles.)
@@ -83,6 +83,18 @@ impl TriangleSetup {
     /// Before a shader's triangles, which may not read u and v.
     pub(crate) fn forget_longest(&mut self) {
         self.longest = STRAIGHT;
+    }
+
+    /// x and y of the corners, in 1/16 px.
+    #[inline(always)]
+    pub(super) fn corners(&self) -> [[i32; 2]; 3] {
+        self.corners.map(|corner| corner.map(i32::from))
+    }
+
+    /// Sets its corners from the vertices.
+    #[inline(always)]
+    pub(super) fn set_corners(&mut self, vertices: &[&ScreenVertex; 3]) {
+        self.corners = vertices.map(|vertex| [vertex.x.to_bits(), vertex.y.to_bits()]);
     }
 
     /// Finds out whether all colours are grey, if that is not known.
@@ -125,7 +137,7 @@ impl TriangleSetup {
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.
     #[inline]
     pub(super) fn extent(&self, axis: usize) -> [i32; 2] {
-        let [a, b, c] = self.corners.map(|corner| corner[axis] >> 4);
+        let [a, b, c] = self.corners.map(|corner| i32::from(corner[axis] >> 4));
         let (first, last) = (a.min(b).min(c), a.max(b).max(c));
         [first.max((last - 1023).min(0)), last.min(1023)]
     }
@@ -182,7 +194,7 @@ impl TriangleSetup {
     #[cold]
     #[inline(never)]
     pub(crate) fn weights(&self, x: i32, y: i32) -> [u32; 2] {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
+        let [[ax, ay], [bx, by], [cx, cy]] = self.corners();
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         [(ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px].map(|edge_function| {
             // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
@@ -209,7 +221,7 @@ impl TriangleSetup {
     #[cold]
     #[inline(never)]
     fn step_in_sliver(&self, plane: &Plane) -> i32 {
-        let [[_, ay], [_, by], [_, cy]] = self.corners;
+        let [[_, ay], [_, by], [_, cy]] = self.corners();
         let [b, c] = plane.steps;
         // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
         // two pixels, since the value stays within 32 bits.
@@ -226,7 +238,7 @@ impl TriangleSetup {
     #[cold]
     #[inline(never)]
     pub(crate) fn resolve_in_sliver(&self, attribute: &Attribute, x: i32, y: i32) -> i32 {
-        let [[ax, ay], [bx, by], [cx, cy]] = self.corners;
+        let [[ax, ay], [bx, by], [cx, cy]] = self.corners();
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         let (b, c) = ((ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px);
         let a = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) - b - c;

@@ -34,8 +34,8 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
             return;
         };
         let depth = depth.get_mut(..length).unwrap_or_default();
-        let origin =
-            origin.wrapping_add((spans.row as usize).wrapping_mul(width)).wrapping_add(spans.column as usize);
+        let (row, column) = (i32::from(spans.row), i32::from(spans.column));
+        let origin = origin.wrapping_add((row as usize).wrapping_mul(width)).wrapping_add(column as usize);
         let longest = setup.longest as usize + 1;
         let steps = || core::array::from_fn(|i| attributes[i].plane.steps[0]);
         let plain_step = fill.step(steps());
@@ -49,7 +49,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
                 let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                     return;
                 };
-                let (x, y) = (spans.column + start as i32, spans.row + n as i32);
+                let (x, y) = (column + start as i32, row + n as i32);
                 start += count;
                 if !D::ALWAYS_PASSES {
                     let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
