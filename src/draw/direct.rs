@@ -22,9 +22,9 @@ use crate::geometry::{
 };
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
-use crate::raster::{Needs, Prepared, Rows, Runs, Span, WIDEST};
+use crate::raster::{Needs, Rows, Runs, Span, TriangleSetup, WIDEST};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Cover, Layers, Material, Run, Shader, Textured, Traits};
+use crate::shade::{Cover, Layers, Material, Run, Shader, Target, Textured, Traits};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -42,7 +42,8 @@ pub(crate) struct Direct<'a, F: PixelFormat, T, const RUN: usize> {
     /// The rows shown, and as many columns as are shaded.
     window: Window,
     run: [F::Word; RUN],
-    prepared: Prepared,
+    setup: TriangleSetup,
+    rows: Rows,
 }
 
 const _: () = assert!(size_of::<Direct<'_, Rgb565, (), 64>>() <= 560);
@@ -67,7 +68,14 @@ where
         if let Some(viewport) = viewport {
             (shown, window) = (shown.within(viewport), window.within(viewport));
         }
-        Self { target, shown, window, run: [F::rgb565(0); RUN], prepared: Prepared::new() }
+        Self {
+            target,
+            shown,
+            window,
+            run: [F::rgb565(0); RUN],
+            setup: TriangleSetup::new(),
+            rows: Rows::NONE,
+        }
     }
 
     /// Draws a triangle within the guard band, up to the first error of the display.
@@ -88,13 +96,13 @@ where
             return Ok(());
         }
         let needs: Needs = Traits::of::<F, S>(shader).needs::<F>(false, is_orthographic, false);
-        if !self.prepared.set(&triangle, &self.window, &needs) {
+        if !self.setup.prepare(&mut self.rows, &triangle, &self.window, &needs) {
             return Ok(());
         }
-        if self.prepared.setup.is_patch() && RUN >= WIDEST {
+        if self.setup.is_patch() && RUN >= WIDEST {
             return self.draw_small(shader);
         }
-        let Self { target, shown, window, run, prepared: Prepared { setup, rows } } = self;
+        let Self { target, shown, window, run, setup, rows } = self;
         let mut result = Ok(());
         rows.each(window, |y, start, end| {
             let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
@@ -118,27 +126,25 @@ where
         is_orthographic: bool,
         shader: &S,
     ) -> Result<(), T::Error> {
-        let window = self.window.clone();
-        let mut runs = Runs::new(polygon, &window);
+        let mut runs = Runs::new(polygon, &self.window);
         let mut result = Ok(());
         while result.is_ok()
-            && let Some((run, corners)) = runs.next(polygon, &window)
+            && let Some((run, corners)) = runs.next(polygon)
         {
             self.window = run;
             result = self.draw(corners, cull, is_orthographic, shader);
         }
-        self.window = window;
+        self.window = runs.window();
         result
     }
 
     /// Draws a small triangle: a row at a time, which fits a run.
     #[inline(never)]
     fn draw_small<S: Shader<F>>(&mut self, shader: &S) -> Result<(), T::Error> {
-        let Self { target, shown, window, run, prepared: Prepared { setup, rows } } = self;
+        let Self { target, shown, window, run, setup, rows } = self;
         let Rows::Short(all) = rows else {
             return Ok(());
         };
-        let all = all.clone();
         for row in all.rows() {
             let [y, start, end] = all.on_screen(row);
             let seen = start.max(shown.columns.start)..end.min(shown.columns.end);
@@ -146,17 +152,17 @@ where
                 continue;
             }
             // Of no height, and its first column that of the span.
-            shader.paint(&mut Cover::<F, NoDepth> {
-                setup,
-                rows: &mut Rows::Short(all.only(row)),
-                window,
+            let mut of_row = Target::<F, NoDepth> {
+                rows: Rows::Short(all.only(row)),
+                window: window.clone(),
                 origin: (start as usize).wrapping_neg(),
                 width: 0,
                 pixels: &mut run[..],
                 depth: &mut [],
                 layers: &Layers::OPAQUE,
                 fog: None,
-            });
+            };
+            shader.paint(Cover { setup, target: &mut of_row });
             let words = run.get((seen.start - start) as usize..(seen.end - start) as usize);
             let area = Rectangle::new(Point::new(seen.start, y), Size::new(seen.len() as u32, 1));
             let colors = words.unwrap_or_default().iter().map(|&word| F::decode(word));

@@ -58,7 +58,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
             Clipped::None => return,
             Clipped::Uncut => assembler.cut(&mut cache, stats),
             Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
-            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, &projection.viewport, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, stats),
         }
     }
 }

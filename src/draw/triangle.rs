@@ -8,9 +8,8 @@ use crate::frame::{Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{
     Clipped, Count, Cull, Oriented, RangeError, ScreenVertex, VertexCache, area, position,
 };
-use crate::raster::{Needs, Prepared, Runs};
-use crate::scene::Viewport;
-use crate::shade::{Cover, InFog, Look, Surface};
+use crate::raster::{Needs, Rows, Runs, TriangleSetup};
+use crate::shade::{Cover, InFog, Look, Surface, Target};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
@@ -54,16 +53,14 @@ pub fn draw_triangle<'a, F: PixelFormat, D: DepthFormat>(
 }
 
 /// The stages from set-up on.
-pub(crate) struct Raster<'a, 'b, F: PixelFormat, D: DepthFormat> {
+pub(crate) struct Raster<'a, F: PixelFormat, D: DepthFormat> {
     look: &'a Look<'a, F, D>,
-    fog: Option<&'a InFog<'a, F, D>>,
-    band: &'a mut Band<'b, F, D>,
-    window: Window,
     needs: Needs,
-    prepared: Prepared,
+    setup: TriangleSetup,
+    target: Target<'a, F, D>,
 }
 
-impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
+impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     /// For a camera that may be orthographic, and colours that may all be grey.
     ///
     /// Not inlined: it takes as much of the caller's stack as it returns, and no more.
@@ -72,12 +69,23 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         (look, fog): (&'a Look<'a, F, D>, Option<&'a InFog<'a, F, D>>),
         kind: [bool; 2],
         window: Window,
-        band: &'a mut Band<'b, F, D>,
+        band: &'a mut Band<'_, F, D>,
     ) -> Self {
         let needs = look.needs(kind, fog.is_some());
-        let mut raster = Self { look, fog, band, window, needs, prepared: Prepared::new() };
+        let (top, width) = (usize::from(band.top), usize::from(band.width));
+        let target = Target {
+            rows: Rows::NONE,
+            window,
+            origin: 0usize.wrapping_sub(top * width),
+            width,
+            pixels: band.pixels,
+            depth: band.depth,
+            layers: &look.layers,
+            fog,
+        };
+        let mut raster = Self { look, needs, setup: TriangleSetup::new(), target };
         // Here: inside of `new` it would split what is set to zero, and link two more routines.
-        raster.prepared.setup.forget_longest();
+        raster.setup.forget_longest();
         raster
     }
 
@@ -88,9 +96,10 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         kind: [bool; 2],
         window: Window,
     ) {
-        (self.look, self.fog, self.window) = (look, fog, window);
+        (self.look, self.target.layers) = (look, &look.layers);
+        (self.target.fog, self.target.window) = (fog, window);
         self.needs = look.needs(kind, fog.is_some());
-        self.prepared.setup.forget_longest();
+        self.setup.forget_longest();
     }
 
     #[inline]
@@ -110,9 +119,10 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     /// A triangle that is not culled. False if it has no pixels in the window.
     #[inline]
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
-        let is_seen = self.prepared.set(triangle, &self.window, &self.needs);
+        let Self { look, needs, setup, target } = self;
+        let is_seen = setup.prepare(&mut target.rows, triangle, &target.window, needs);
         if is_seen {
-            self.paint();
+            look.paint(Cover { setup, target });
         }
         is_seen
     }
@@ -121,13 +131,12 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
     #[cold]
     #[inline(never)]
     pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull) {
-        let window = self.window.clone();
-        let mut runs = Runs::new(polygon, &window);
-        while let Some((run, corners)) = runs.next(polygon, &window) {
-            self.window = run;
+        let mut runs = Runs::new(polygon, &self.target.window);
+        while let Some((run, corners)) = runs.next(polygon) {
+            self.target.window = run;
             self.draw(corners, cull);
         }
-        self.window = window;
+        self.target.window = runs.window();
     }
 
     /// Goes on to the next run of the folded polygon in a mesh's cache, and to a window that is just that. Where there is none, the
@@ -139,37 +148,24 @@ impl<'a, 'b, F: PixelFormat, D: DepthFormat> Raster<'a, 'b, F, D> {
         cache: &mut VertexCache<'_>,
         cull: Cull,
         runs: &mut Option<Runs>,
-        viewport: &Viewport,
         stats: &mut impl Count,
     ) {
-        let all = self.band.window().within(viewport);
         let polygon = cache.polygon();
         let mut is_first = runs.is_none();
-        let found = runs.get_or_insert_with(|| Runs::new(polygon, &all));
-        while let Some((run, corners)) = found.next(polygon, &all) {
+        let found = runs.get_or_insert_with(|| Runs::new(polygon, &self.target.window));
+        while let Some((run, corners)) = found.next(polygon) {
             if core::mem::take(&mut is_first) {
                 stats.count(|stats| &mut stats.drawn);
             }
             if !cull.leaves_out(area(corners.map(position))) {
-                self.window = run;
+                self.target.window = run;
                 return cache.set_piece(found.number());
             }
         }
         if is_first {
             stats.count(|stats| &mut stats.out_of_sight);
         }
-        (self.window, *runs, cache.clipped) = (all, None, Clipped::None);
-    }
-
-    /// The triangle that was set up.
-    #[inline]
-    fn paint(&mut self) {
-        let Prepared { setup, rows } = &mut self.prepared;
-        let window = &self.window;
-        let (top, width) = (usize::from(self.band.top), usize::from(self.band.width));
-        let origin = 0usize.wrapping_sub(top * width);
-        let (pixels, depth) = (&mut *self.band.pixels, &mut *self.band.depth);
-        let (layers, fog) = (&self.look.layers, self.fog);
-        self.look.paint(&mut Cover { setup, rows, window, origin, width, pixels, depth, layers, fog });
+        self.target.window = found.window();
+        (*runs, cache.clipped) = (None, Clipped::None);
     }
 }

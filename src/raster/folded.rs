@@ -26,6 +26,9 @@ pub(crate) fn rows_of_folded(polygon: &[ScreenVertex], window: &Window) -> Range
 /// How far the runs of a folded polygon in a window were looked for. They come row by row, in a row triangle by triangle, and each
 /// from left to right.
 pub(crate) struct Runs {
+    /// The columns and the rows of the window. (16 bits each: it is on the stack while a run is drawn.)
+    columns: [i16; 2],
+    rows: [i16; 2],
     row: i16,
     /// The column in which the current triangle continues.
     column: i16,
@@ -36,9 +39,17 @@ pub(crate) struct Runs {
 impl Runs {
     /// None yet.
     pub(crate) fn new(polygon: &[ScreenVertex], window: &Window) -> Self {
-        let mut runs = Self { row: 0, column: 0, number: 0 };
-        runs.start_row(rows_of_folded(polygon, window).start, window);
+        let bits = |range: &Range<i32>| [range.start as i16, range.end as i16];
+        let (columns, rows) = (bits(&window.columns), bits(&window.rows));
+        let mut runs = Self { columns, rows, row: 0, column: 0, number: 0 };
+        runs.start_row(rows_of_folded(polygon, window).start);
         runs
+    }
+
+    /// The window in which they are looked for.
+    pub(crate) fn window(&self) -> Window {
+        let range = |[start, end]: [i16; 2]| start.into()..end.into();
+        Window { columns: range(self.columns), rows: range(self.rows) }
     }
 
     /// Which triangle of the fan draws the last run.
@@ -54,9 +65,8 @@ impl Runs {
     pub(crate) fn next<'a>(
         &mut self,
         polygon: &'a [ScreenVertex],
-        window: &Window,
     ) -> Option<(Window, [&'a ScreenVertex; 3])> {
-        let end_of_rows = rows_of_folded(polygon, window).end;
+        let end_of_rows = rows_of_folded(polygon, &self.window()).end;
         let mut sides = [[0; 2]; MOST_CORNERS - 2];
         let sides = sides.get_mut(..polygon.len().checked_sub(2)?)?;
         loop {
@@ -66,24 +76,24 @@ impl Runs {
             }
             set_sides(sides, polygon, row);
             while usize::from(self.number) < sides.len() {
-                if let Some(columns) = self.next_in_row(sides, window) {
+                if let Some(columns) = self.next_in_row(sides) {
                     let corners = piece(polygon, self.number.into())?;
                     return Some((Window { columns, rows: row..row + 1 }, corners));
                 }
             }
-            self.start_row(row + 1, window);
+            self.start_row(row + 1);
         }
     }
 
     /// Looks at some more columns of the current triangle, or goes on to the next one. They are returned if it draws them.
     #[inline]
-    fn next_in_row(&mut self, sides: &[[i32; 2]], window: &Window) -> Option<Range<i32>> {
+    fn next_in_row(&mut self, sides: &[[i32; 2]]) -> Option<Range<i32>> {
         let number = usize::from(self.number);
         let &[up, down] = sides.get(number)?;
         let (start, mut end) =
-            (i32::from(self.column).max(up.min(down)), up.max(down).min(window.columns.end));
+            (i32::from(self.column).max(up.min(down)), up.max(down).min(self.columns[1].into()));
         if start >= end {
-            (self.number, self.column) = (self.number + 1, window.columns.start as i16);
+            (self.number, self.column) = (self.number + 1, self.columns[0]);
             return None;
         }
         // Up to `end` the same triangles cover all pixels: it is moved to the left where one of them begins or ends
@@ -104,8 +114,8 @@ impl Runs {
     }
 
     /// Begins at the left end of a row.
-    fn start_row(&mut self, row: i32, window: &Window) {
-        *self = Self { row: row as i16, column: window.columns.start as i16, number: 0 };
+    fn start_row(&mut self, row: i32) {
+        (self.row, self.column, self.number) = (row as i16, self.columns[0], 0);
     }
 }
 
@@ -185,7 +195,7 @@ mod tests {
             for cull in [Cull::Back, Cull::Front, Cull::None] {
                 let mut times = [[0; 16]; 16];
                 let mut runs = Runs::new(&polygon, &window);
-                while let Some((run, corners)) = runs.next(&polygon, &window) {
+                while let Some((run, corners)) = runs.next(&polygon) {
                     assert!(run.rows.len() == 1 && !run.columns.is_empty());
                     if cull.leaves_out(area(corners.map(position))) {
                         continue;

@@ -50,14 +50,14 @@ impl<'f, F: PixelFormat, D: DepthFormat> DrawRun<F::Word> for Blended<'_, 'f, F,
 }
 
 /// Draws a triangle whose colours a fill makes, and blends it.
-pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: &mut Cover<'_, F, D>, fill: &dyn Fill<F::Word>) {
-    let layers = cover.layers;
+pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, fill: &dyn Fill<F::Word>) {
+    let layers = cover.target.layers;
     let layering = &layers.layering;
     let is_usual = layering.tests_depth && layering.depth_bias == 0 && !layers.writes_depth();
     let Some(blend) = layers.code.blend_evenly.filter(|_| is_usual && layers.opacity.is_none()) else {
         return draw_filled(cover, fill);
     };
-    let (setup, fog) = (cover.setup, cover.fog);
+    let (setup, fog) = (cover.setup, cover.target.fog);
     let line = &mut Perspective::new(setup, fill.units());
     let (fades_to, alpha) = (layers.code.fades_to, layering.alpha);
     draw_rows::<false, F, D>(cover, Blended { line, fill, setup, fog, fades_to, blend, alpha });

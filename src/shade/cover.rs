@@ -1,4 +1,5 @@
-//! A cover: a triangle's set-up, the memory of a band, and what is done with colours once they are made.
+//! A cover: a triangle's set-up, and where it is drawn to: its rows, the memory of a band, and what is done with colours once they
+//! are made.
 //!
 //! - In: a triangle that is set up, its rows, and the memory of a band.
 //! - Out: these, for the loops that draw it.
@@ -12,11 +13,16 @@ use super::fog::Fogging;
 use crate::frame::{DepthFormat, PixelFormat, Window};
 use crate::raster::{Rows, TriangleSetup};
 
-/// A triangle, and the memory that it is drawn to.
-pub(crate) struct Cover<'a, F: PixelFormat, D: DepthFormat> {
+/// A triangle, and where it is drawn to. Two references, which are passed in registers.
+pub(crate) struct Cover<'a, 'b, F: PixelFormat, D: DepthFormat> {
     pub(crate) setup: &'a TriangleSetup,
-    pub(crate) rows: &'a mut Rows,
-    pub(crate) window: &'a Window,
+    pub(crate) target: &'a mut Target<'b, F, D>,
+}
+
+/// Where triangles are drawn to, one after another: the rows of the one that is set up, within a window of a band's memory.
+pub(crate) struct Target<'a, F: PixelFormat, D: DepthFormat> {
+    pub(crate) rows: Rows,
+    pub(crate) window: Window,
     /// The index of column 0 of row 0 among `pixels`, which wraps as it may lie before them. A row further it is `width` more.
     pub(crate) origin: usize,
     pub(crate) width: usize,
@@ -68,7 +74,7 @@ pub(crate) struct LayerCode<F: PixelFormat, D: DepthFormat> {
 }
 
 /// A function that draws a triangle whose colours a fill makes.
-pub(crate) type DrawFill<F, D> = fn(&mut Cover<'_, F, D>, &dyn Fill<<F as PixelFormat>::Word>);
+pub(crate) type DrawFill<F, D> = fn(Cover<'_, '_, F, D>, &dyn Fill<<F as PixelFormat>::Word>);
 
 /// A function that blends: pixels, what is laid over them, and how opaque that is.
 pub(crate) type Blend<F> = fn(&mut [<F as PixelFormat>::Word], &[<F as PixelFormat>::Word], &[u8]);
@@ -146,7 +152,7 @@ fn are_one<T>(a: Option<T>, b: Option<T>, are_one: impl Fn(T, T) -> bool) -> boo
     }
 }
 
-impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
+impl<F: PixelFormat, D: DepthFormat> Target<'_, F, D> {
     /// What draws a triangle whose colours a fill makes, if it is not drawn as opaque surfaces are.
     #[inline]
     pub(super) fn drawn_by(&self) -> Option<DrawFill<F, D>> {

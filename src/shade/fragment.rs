@@ -67,9 +67,9 @@ impl<F: PixelFormat, S: Shader<F>> Colors<F::Word> for In<'_, F, S> {
 }
 
 /// Draws a triangle with a shader that sees pixels.
-pub(super) fn draw<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, cover: &mut Cover<'_, F, D>) {
+pub(super) fn draw<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, cover: Cover<'_, '_, F, D>) {
     let setup = cover.setup;
-    let mut draw = |fill: &dyn Fill<[i32; 5]>| {
+    let draw = |fill: &dyn Fill<[i32; 5]>| {
         let line = Perspective::new(setup, fill.units());
         let fragments = Fragments { line, fill, shader };
         layered::draw(cover, &mut In::<F, S>(fragments, core::marker::PhantomData));

@@ -14,7 +14,7 @@
 //! 5. fog is laid over the colours;
 //! 6. colours are blended, and depths written, where it is not 0.
 
-use super::cover::{Cover, Layers};
+use super::cover::{Cover, Layers, Target};
 use super::fill::Fill;
 use super::perspective::Perspective;
 use crate::frame::{BAYER, DepthFormat, PixelFormat};
@@ -79,7 +79,7 @@ impl<W: Copy> Colors<W> for Partial<'_, W> {
 
 /// Draws a triangle whose colours a fill makes.
 pub(super) fn draw_filled<F: PixelFormat, D: DepthFormat>(
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<F::Word>,
 ) {
     let line = Perspective::new(cover.setup, fill.units());
@@ -88,7 +88,7 @@ pub(super) fn draw_filled<F: PixelFormat, D: DepthFormat>(
 
 /// Draws a triangle some pixels of which its fill leaves out.
 pub(super) fn draw_some<F: PixelFormat, D: DepthFormat>(
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<Option<F::Word>>,
 ) {
     let line = Perspective::new(cover.setup, fill.units());
@@ -98,11 +98,12 @@ pub(super) fn draw_some<F: PixelFormat, D: DepthFormat>(
 /// Draws a triangle, block by block.
 #[inline(never)]
 pub(super) fn draw<F: PixelFormat, D: DepthFormat>(
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
     colors: &mut dyn Colors<F::Word>,
 ) {
-    let Cover { setup, rows, window, origin, width, pixels, depth, layers, fog } = cover;
-    let (setup, origin, width, fog) = (*setup, *origin, *width, *fog);
+    let Cover { setup, target } = cover;
+    let Target { rows, window, origin, width, pixels, depth, layers, fog } = target;
+    let (origin, width, fog) = (*origin, *width, *fog);
     rows.each(window, |y, start, end| {
         let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
         let count = (end - start) as usize;

@@ -40,7 +40,7 @@ mod visible;
 
 pub use blend::{Additive, Layer, LayerIn, Masked, Multiply, Opaque, Over, ScreenDoor};
 pub use bordered::{Clamped, LitClamped, LitMirrored, Mirrored};
-pub(crate) use cover::{Cover, InFog, Layers};
+pub(crate) use cover::{Cover, InFog, Layers, Target};
 pub use cut_out::{CutOut, VertexAlpha};
 pub use fog::Fog;
 pub use kinds::{ColorlessKind, Flat, Gouraud, Kind, LitKind, LitTextured, TexelKind, Textured};

@@ -88,25 +88,25 @@ impl<'f, F: PixelFormat> DrawRun<F::Word> for Fogged<'_, 'f, F> {
 
 /// Draws an opaque triangle.
 #[inline(never)]
-pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: &mut Cover<'_, F, D>, fill: &dyn Fill<F::Word>) {
+pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, fill: &dyn Fill<F::Word>) {
     let line = &mut Perspective::new(cover.setup, fill.units());
     draw_rows::<true, F, D>(cover, Filled { line, fill });
 }
 
 /// Draws an opaque triangle all in one word.
 #[inline(never)]
-pub(super) fn draw_evenly<F: PixelFormat, D: DepthFormat>(cover: &mut Cover<'_, F, D>, word: F::Word) {
+pub(super) fn draw_evenly<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, word: F::Word) {
     draw_rows::<true, F, D>(cover, Even(word));
 }
 
 /// Draws an opaque triangle that is in fog.
 #[inline(never)]
 pub(super) fn draw_in_fog<F: PixelFormat, D: DepthFormat>(
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<F::Word>,
 ) {
     let (setup, line) = (cover.setup, &mut Perspective::new(cover.setup, fill.units()));
-    if let Some(fog) = cover.fog {
+    if let Some(fog) = cover.target.fog {
         draw_rows::<true, F, D>(cover, Fogged { filled: Filled { line, fill }, setup, fog: &fog.fogging });
     }
 }

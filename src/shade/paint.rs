@@ -14,9 +14,9 @@ use super::quality::sealed::Sealed;
 use super::shader::Pixels;
 use crate::frame::{DepthFormat, PixelFormat};
 
-impl<F: PixelFormat, D: DepthFormat> Sealed for &mut Cover<'_, F, D> {}
+impl<F: PixelFormat, D: DepthFormat> Sealed for Cover<'_, '_, F, D> {}
 
-impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cover<'_, F, D> {
+impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for Cover<'_, '_, F, D> {
     #[inline]
     fn is_gray(&self) -> bool {
         self.setup.gray
@@ -32,7 +32,7 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
 
     #[inline]
     fn fill_evenly(self, word: F::Word) {
-        if let Some(draw) = self.drawn_by() {
+        if let Some(draw) = self.target.drawn_by() {
             draw(self, &Even(word));
         } else if self.setup.is_patch() {
             self.draw_small(&Even(word));
@@ -48,7 +48,7 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
 
     #[inline]
     fn fill_rows(self, fill: &dyn Fill<F::Word>) {
-        match self.drawn_by() {
+        match self.target.drawn_by() {
             Some(draw) => draw(self, fill),
             None => opaque::draw(self, fill),
         }
@@ -61,13 +61,13 @@ impl<F: PixelFormat, D: DepthFormat, Q: Quality> Pixels<F::Word, Q> for &mut Cov
 }
 
 #[inline]
-fn draw<const N: usize, F, D, L>(cover: &mut Cover<'_, F, D>, fill: &L)
+fn draw<const N: usize, F, D, L>(cover: Cover<'_, '_, F, D>, fill: &L)
 where
     F: PixelFormat,
     D: DepthFormat,
     L: Fill<F::Word> + FillRow<N, Word = F::Word>,
 {
-    if let Some(draw) = cover.drawn_by() {
+    if let Some(draw) = cover.target.drawn_by() {
         draw(cover, fill);
     } else if cover.setup.is_patch() {
         cover.draw_small(fill);

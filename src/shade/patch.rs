@@ -10,22 +10,24 @@
 //!
 //! All that belongs to a row is a product with its number: nothing is carried from row to row.
 
-use super::cover::Cover;
+use super::cover::{Cover, Target};
 use super::fill::{Fill, FillRow};
 use crate::frame::{DepthFormat, PixelFormat};
-use crate::num::U1F31;
+use crate::num::{IS_ARMV6M, U1F31};
 use crate::raster::Rows;
 use core::hint::black_box;
 
-impl<F: PixelFormat, D: DepthFormat> Cover<'_, F, D> {
+impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
     #[inline(never)]
-    pub(super) fn draw_small<const N: usize, L>(&mut self, fill: &L)
+    pub(super) fn draw_small<const N: usize, L>(self, fill: &L)
     where
         L: Fill<F::Word> + FillRow<N, Word = F::Word>,
     {
-        let Self { setup, rows, origin, width, pixels, depth, .. } = self;
-        let (setup, width) = (*setup, *width);
-        let (Rows::Short(spans), Some(attributes)) = (&**rows, setup.attributes.first_chunk::<N>()) else {
+        let Self { setup, target } = self;
+        let setup = if IS_ARMV6M { black_box(setup) } else { setup };
+        let Target { rows, origin, width, pixels, depth, .. } = target;
+        let width = *width;
+        let (Rows::Short(spans), Some(attributes)) = (&*rows, setup.attributes.first_chunk::<N>()) else {
             return;
         };
         // So that both are known to be as long.

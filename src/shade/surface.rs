@@ -49,17 +49,17 @@ pub(crate) struct Look<'a, F: PixelFormat, D: DepthFormat> {
 }
 
 enum Painter<'a, F: PixelFormat, D: DepthFormat> {
-    Material(Recipe<'a>, fn(&Recipe<'_>, &mut Cover<'_, F, D>)),
+    Material(Recipe<'a>, fn(&Recipe<'_>, Cover<'_, '_, F, D>)),
     Shader(&'a (dyn Paint<F, D> + Sync)),
 }
 
 /// A shader whose type is forgotten.
 trait Paint<F: PixelFormat, D: DepthFormat> {
-    fn paint_cover(&self, cover: &mut Cover<'_, F, D>);
+    fn paint_cover(&self, cover: Cover<'_, '_, F, D>);
 }
 
 impl<F: PixelFormat, D: DepthFormat, S: Shader<F>> Paint<F, D> for S {
-    fn paint_cover(&self, cover: &mut Cover<'_, F, D>) {
+    fn paint_cover(&self, cover: Cover<'_, '_, F, D>) {
         if S::REACH == Reach::Attributes {
             self.paint(cover);
         } else {
@@ -70,7 +70,7 @@ impl<F: PixelFormat, D: DepthFormat, S: Shader<F>> Paint<F, D> for S {
 
 fn paint_material<F: PixelFormat, D: DepthFormat, K: Kind, Q: Quality>(
     recipe: &Recipe<'_>,
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
 ) {
     K::paint::<F, Q, _>(recipe, cover);
 }
@@ -163,7 +163,7 @@ impl<F: PixelFormat, D: DepthFormat> Look<'_, F, D> {
 
     /// Draws a triangle that is set up.
     #[inline]
-    pub(crate) fn paint(&self, cover: &mut Cover<'_, F, D>) {
+    pub(crate) fn paint(&self, cover: Cover<'_, '_, F, D>) {
         match &self.painter {
             Painter::Material(recipe, paint) => paint(recipe, cover),
             Painter::Shader(shader) => shader.paint_cover(cover),

@@ -6,7 +6,7 @@
 //!
 //! Each row of a triangle is a span of pixels, and what is visible of a span is one run or several.
 
-use super::cover::Cover;
+use super::cover::{Cover, Target};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::raster::{first_visible, visible};
 
@@ -26,11 +26,12 @@ pub(super) trait DrawRun<W> {
 /// Draws what is visible of each row, and stores its depth if it `STORES`.
 #[inline(always)]
 pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
-    cover: &mut Cover<'_, F, D>,
+    cover: Cover<'_, '_, F, D>,
     mut runs: impl DrawRun<F::Word>,
 ) {
-    let Cover { setup, rows, window, origin, width, pixels, depth, .. } = cover;
-    let (setup, origin, width) = (*setup, *origin, *width);
+    let Cover { setup, target } = cover;
+    let Target { rows, window, origin, width, pixels, depth, .. } = target;
+    let (origin, width) = (*origin, *width);
     // So that both are known to be as long.
     let length = if D::ALWAYS_PASSES { pixels.len() } else { pixels.len().min(depth.len()) };
     let Some(pixels) = pixels.get_mut(..length) else {

@@ -251,7 +251,7 @@ fn draw_folded<F: PixelFormat, D: DepthFormat>(
     view: &ListView<'_>,
     folded: &ListTriangle,
     draw: &Draw<'_, F, D>,
-    raster: &mut Raster<'_, '_, F, D>,
+    raster: &mut Raster<'_, F, D>,
 ) {
     let mut corners = [ScreenVertex::default(); MOST_CORNERS];
     let polygon = view.polygon(folded, draw.look.traits.inputs(), draw.vertices, &mut corners);
