@@ -73,17 +73,21 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     ) -> Self {
         let needs = look.needs(kind, fog.is_some());
         let (top, width) = (usize::from(band.top), usize::from(band.width));
-        let target = Target {
-            rows: Rows::NONE,
-            window,
-            origin: 0usize.wrapping_sub(top * width),
-            width,
-            pixels: band.pixels,
-            depth: band.depth,
-            layers: &look.layers,
-            fog,
+        let mut raster = Self {
+            look,
+            needs,
+            setup: TriangleSetup::new(),
+            target: Target {
+                rows: Rows::NONE,
+                window,
+                origin: 0usize.wrapping_sub(top * width),
+                width,
+                pixels: band.pixels,
+                depth: band.depth,
+                layers: &look.layers,
+                fog,
+            },
         };
-        let mut raster = Self { look, needs, setup: TriangleSetup::new(), target };
         // Here: inside of `new` it would split what is set to zero, and link two more routines.
         raster.setup.forget_longest();
         raster

@@ -109,8 +109,19 @@ pub(crate) struct LongRows {
     end: i16,
     /// The edge that begins at the knee.
     lower: Edge,
-    lower_is_right: bool,
+    lower_side: Side,
 }
+
+/// A side of a row. (No number is 0, which marks [`Rows::Short`] then: that is all zeros without a triangle.)
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(u8)]
+enum Side {
+    #[default]
+    Left = 1,
+    Right = 2,
+}
+
+const _: () = assert!(size_of::<Rows>() <= 72);
 
 impl Rows {
     /// Of no triangle.
@@ -199,10 +210,10 @@ impl LongRows {
         if last_row > row {
             self.left.set(top, last, row);
         }
-        self.lower_is_right = next_row < last_row;
+        self.lower_side = if next_row < last_row { Side::Right } else { Side::Left };
         self.knee = next_row.min(last_row).min(end);
         if self.knee < end {
-            let (from, to) = if self.lower_is_right { (next, last) } else { (last, next) };
+            let (from, to) = if self.lower_side == Side::Right { (next, last) } else { (last, next) };
             self.lower.set(from, to, self.knee.max(row));
         }
     }
@@ -232,7 +243,7 @@ impl LongRows {
         if self.row >= end {
             return false;
         }
-        let edge = if self.lower_is_right { &mut self.right } else { &mut self.left };
+        let edge = if self.lower_side == Side::Right { &mut self.right } else { &mut self.left };
         *edge = self.lower;
         self.knee = end;
         true

@@ -23,24 +23,16 @@ impl Perspective<'_> {
     /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
     #[inline(never)]
     pub(super) fn bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        let near = self.near(x, y, steps);
-        let way = self.bent_from(&near, steps);
-        if self.setup.is_extreme && matches!(way, Way::Table | Way::Chords) {
-            self.set_by_far_end(&near, steps, way);
-        }
-        way
-    }
-
-    /// Likewise, from its near end. Of an extreme triangle lines are set if they are straight, which are held in the range by themselves;
-    /// others are still to be set [from both ends](Self::set_by_far_end).
-    #[inline(never)]
-    pub(super) fn bent_from(&mut self, near: &Place, steps: u32) -> Way {
+        let near = &self.near(x, y, steps);
         let Some((way, (size, down))) = self.start(near, steps) else {
             return Way::None;
         };
         if steps == 0 {
             self.set_pixel(near, None);
-        } else if !self.setup.is_extreme || way == Way::Straight {
+        } else if self.setup.is_extreme && way != Way::Straight {
+            // What is straight is held in the range by itself.
+            self.set_by_far_end(near, steps, way);
+        } else {
             let is_table = way == Way::Table && self.units.form == Form::Modular;
             self.set_lines(steps, way, |attribute, _| {
                 let above = attribute.at(near);

@@ -149,32 +149,30 @@ impl<'a> Perspective<'a> {
     #[inline(always)]
     pub(crate) fn draw<W>(&mut self, x: i32, y: i32, pixels: &mut [W], fill: &dyn Fill<W>) {
         // One after another: a table of jumps takes longer.
-        let way = (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32);
-        if way == Way::Table {
-            return fill.table(pixels, &self.curve);
+        let mut way = (self.way)(self, x, y, pixels.len().wrapping_sub(1) as u32);
+        loop {
+            if way == Way::Table {
+                return fill.table(pixels, &self.curve);
+            }
+            if way == Way::Straight {
+                return fill.straight(pixels, &self.curve);
+            }
+            if way == Way::Chords {
+                return fill.chords(pixels, &self.curve);
+            }
+            if way != Way::Bent {
+                return self.draw_parts(x, y, pixels, fill);
+            }
+            // From here: so it is not on the stack together with what asks for it. (The length is hidden, so that it is not kept.)
+            way = self.bent(x, y, black_box(pixels.len()).wrapping_sub(1) as u32);
         }
-        if way == Way::Straight {
-            return fill.straight(pixels, &self.curve);
-        }
-        if way == Way::Chords {
-            return fill.chords(pixels, &self.curve);
-        }
-        self.draw_parts(x, y, pixels, fill, way == Way::Bent);
     }
 
-    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on. Not too many, but bent, they may be
-    /// at first: asked from here, `bent` is not on the stack together with what asks for it.
+    /// Draws pixels of a row that are too many to be drawn at one go, in parts, from the near end on.
     #[cold]
     #[inline(never)]
-    fn draw_parts<W>(
-        &mut self,
-        mut x: i32,
-        y: i32,
-        mut pixels: &mut [W],
-        fill: &dyn Fill<W>,
-        are_bent: bool,
-    ) {
-        let mut count = if are_bent { pixels.len() } else { pixels.len().div_ceil(2) };
+    fn draw_parts<W>(&mut self, mut x: i32, y: i32, mut pixels: &mut [W], fill: &dyn Fill<W>) {
+        let mut count = pixels.len().div_ceil(2);
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
             let near_is_right = !self.setup.is_small && !self.setup.straight && self.setup.q_rises;
@@ -268,7 +266,7 @@ impl<'a> Perspective<'a> {
         let w_step = if down < 32 { size >> down } else { 0 };
         // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
         if w_step < NEAR_STEP || (w_step >> 10) * steps > 7 << 19 {
-            return self.bent_from(&near, steps);
+            return Way::Bent;
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
         // On a Cortex-M4 it is faster inlined, by 3 % in long rows.
