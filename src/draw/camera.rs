@@ -7,7 +7,7 @@
 use super::canvas::Canvas;
 use super::view::View;
 use crate::frame::{Band, Depth16, DepthFormat, PixelFormat};
-use crate::geometry::{Clip, MOST_CORNERS, ScreenVertex, Stats, ToClip};
+use crate::geometry::{Clip, MOST_CORNERS, ScreenVertex, Stats, ToClip, Upper};
 use crate::math::{Pose, Vec3};
 use crate::num::{I12F4, U1F31};
 use crate::scene::{Camera, Lights, Mesh, Projection, Vertex};
@@ -98,6 +98,6 @@ pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Op
     let mut at = [ScreenVertex::default(); MOST_CORNERS];
     // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
     let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
-    let (count, _) = clip.cut(&to_clip, [corner; 3], &mut at);
+    let (count, _) = clip.cut(&to_clip, [corner; 3], &mut at, &mut Upper::default());
     at.first().filter(|_| count > 0).copied()
 }

@@ -18,7 +18,7 @@
 
 use crate::frame::{NoDepth, PixelFormat, Window};
 use crate::geometry::{
-    Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, VertexColors, piece, position, set_attributes,
+    Cull, MOST_CORNERS, Oriented, Placing, ScreenVertex, Upper, VertexColors, piece, position, set_attributes,
 };
 use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
@@ -392,8 +392,8 @@ impl Posed {
     fn cut(&self, half: [usize; 3], side: &Side<'_>, to: &mut [ScreenVertex; MOST_CORNERS]) -> (usize, bool) {
         let triangle = half.map(|i| Vertex { uv: side.uv[i], ..self.vertices[i] });
         set_attributes(triangle.each_ref(), &VertexColors::default(), to);
-        self.placing
-            .clipping()
-            .map_or((0, false), |(to_clip, clip)| clip.cut(to_clip, triangle.each_ref(), to))
+        self.placing.clipping().map_or((0, false), |(to_clip, clip)| {
+            clip.cut(to_clip, triangle.each_ref(), to, &mut Upper::default())
+        })
     }
 }

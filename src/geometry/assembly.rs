@@ -8,7 +8,7 @@
 //! vertices of triangles that are left get attributes and light. So the cache may hold vertices without attributes. A
 //! triangle that has to be clipped takes the cache's memory for its polygon, and the cache is empty afterwards.
 
-use super::cut::MOST_CORNERS;
+use super::cut::{MOST_CORNERS, Upper};
 use super::fan::piece;
 use super::orient::{Cull, Oriented, area, position};
 use super::screen::ScreenVertex;
@@ -59,6 +59,12 @@ pub(crate) enum Clipped {
     /// A polygon of so many corners, which is folded.
     Folded(u8),
 }
+
+// So that clipping finds room where the hints are.
+const _: () = assert!(
+    core::mem::offset_of!(VertexCache<'_>, hints).is_multiple_of(align_of::<Upper>())
+        && size_of::<Upper>() <= HINTS
+);
 
 impl<'m> VertexCache<'m> {
     /// For a new mesh. Before use it has to [`forget`](Self::forget): here, vertex 0 counts as cached.
@@ -246,16 +252,20 @@ impl Assembler<'_> {
     #[inline(never)]
     pub(crate) fn cut(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
         stats.count(|stats| &mut stats.clipped);
-        cache.forget();
         cache.clipped = Clipped::None;
         for (index, to) in self.last(cache).into_iter().zip(&mut cache.vertices) {
             self.complete(index, to);
         }
         let corners = self.corners(cache);
-        let Some((to_clip, clip)) = self.placing.clipping() else {
-            return;
+        // The hints' memory is free meanwhile.
+        let upper = cache.hints.get_mut(..size_of::<Upper>()).unwrap_or_default();
+        let upper: Option<&mut Upper> =
+            bytemuck::try_cast_slice_mut(upper).ok().and_then(|upper| upper.first_chunk_mut());
+        let (count, is_folded) = match (self.placing.clipping(), upper) {
+            (Some((to_clip, clip)), Some(upper)) => clip.cut(to_clip, corners, &mut cache.vertices, upper),
+            _ => (0, false),
         };
-        let (count, is_folded) = clip.cut(to_clip, corners, &mut cache.vertices);
+        cache.forget();
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }

@@ -59,34 +59,29 @@ struct Polygon<'a> {
     /// A vertex that needs no clipping has its position. Any other has [`NOT_PLACED`] for x, and in the bits of y outside of
     /// which sides it lies, as [`Clip::look`] puts them there.
     vertices: &'a mut [ScreenVertex; MOST_CORNERS],
-    /// x and y as [`COARSER`] says, from the screen's upper left corner; w in clip units with [`FINE`] bits more.
-    at: [At; MOST_CORNERS],
+    /// x and y as [`COARSER`] says, from the screen's upper left corner; w in clip units with [`FINE`] bits more. 48 bits each: of corner
+    /// after corner, the lower 32 and the upper 16.
+    lower: [[u32; 3]; MOST_CORNERS],
+    upper: &'a mut Upper,
     count: usize,
     /// w of the near and of the far plane, in the same unit.
     planes: [i64; 2],
 }
 
-/// x, y and w, 48 bits each, as upper 16 and lower 32 bits. (Three `i64` would take more stack.)
-#[derive(Clone, Copy)]
-struct At {
-    lower: [u32; 3],
-    upper: [i16; 4],
-}
-
-impl At {
-    const ZERO: Self = Self { lower: [0; 3], upper: [0; 4] };
-}
+/// The memory that clipping takes besides that of the vertices and its own stack. A mesh has it while none of its triangles is drawn.
+pub(crate) type Upper = [[i16; 3]; MOST_CORNERS];
 
 impl Polygon<'_> {
     #[inline(always)]
     fn at(&self, i: usize, axis: usize) -> i64 {
-        let at = self.at.get(i).unwrap_or(&At::ZERO);
-        i64::from(at.upper[axis & 3]) << 32 | i64::from(at.lower.get(axis).copied().unwrap_or(0))
+        let upper = self.upper.get(i).and_then(|at| at.get(axis)).copied().unwrap_or(0);
+        let lower = self.lower.get(i).and_then(|at| at.get(axis)).copied().unwrap_or(0);
+        i64::from(upper) << 32 | i64::from(lower)
     }
 
     #[inline(always)]
     fn set(&mut self, i: usize, axis: usize, value: i64) {
-        if let Some(At { upper, lower }) = self.at.get_mut(i)
+        if let (Some(upper), Some(lower)) = (self.upper.get_mut(i), self.lower.get_mut(i))
             && let (Some(upper), Some(lower)) = (upper.get_mut(axis), lower.get_mut(axis))
         {
             (*upper, *lower) = ((value >> 32) as i16, value as u32);
@@ -124,7 +119,8 @@ impl Polygon<'_> {
         while first + 1 < end {
             end -= 1;
             swap(self.vertices, first, end);
-            swap(&mut self.at, first, end);
+            swap(&mut self.lower, first, end);
+            swap(self.upper, first, end);
             first += 1;
         }
     }
@@ -150,9 +146,10 @@ impl Clip {
         to_clip: &ToClip,
         corners: [&Vertex; 3],
         to: &mut [ScreenVertex; MOST_CORNERS],
+        upper: &mut Upper,
     ) -> (usize, bool) {
         let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
-        let mut polygon = Polygon { vertices: to, at: [At::ZERO; MOST_CORNERS], count: 3, planes };
+        let mut polygon = Polygon { vertices: to, lower: [[0; 3]; MOST_CORNERS], upper, count: 3, planes };
         let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
             outside |= self.start(to_clip, vertex, &mut polygon, i);

@@ -16,7 +16,7 @@ mod whole;
 pub(crate) use assembly::{Assembler, Clipped, VertexCache};
 pub(crate) use clip::Clip;
 pub use coloring::Coloring;
-pub(crate) use cut::MOST_CORNERS;
+pub(crate) use cut::{MOST_CORNERS, Upper};
 pub(crate) use fan::piece;
 #[cfg(test)]
 pub(crate) use fan::tests::polygon;

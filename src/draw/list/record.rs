@@ -14,7 +14,7 @@ use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOT
 use super::style::Style;
 use crate::frame::Window;
 use crate::geometry::{
-    Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, area, clockwise, dim, set_attributes,
+    Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, Upper, area, clockwise, dim, set_attributes,
 };
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
@@ -271,7 +271,7 @@ impl Recorder<'_, '_> {
         let mut polygon = [ScreenVertex::default(); MOST_CORNERS];
         let corners = indices.map(|index| self.mesh.vertex(index));
         set_attributes(corners, &self.style.coloring, &mut polygon);
-        let (count, is_folded) = clip.cut(to_clip, corners, &mut polygon);
+        let (count, is_folded) = clip.cut(to_clip, corners, &mut polygon, &mut Upper::default());
         if let Some(light) = self.style.coloring.on_face(corners) {
             polygon.iter_mut().take(count).for_each(|corner| dim(&mut corner.color, light));
         }
