@@ -21,7 +21,7 @@ pub(crate) use fan::piece;
 #[cfg(test)]
 pub(crate) use fan::tests::polygon;
 pub use orient::Cull;
-pub(crate) use orient::{Oriented, area, clockwise, position};
+pub(crate) use orient::{Oriented, area, clockwise, nearest_first, position};
 pub(crate) use screen::set_attributes;
 pub use screen::{Inputs, RangeError, ScreenVertex};
 pub(crate) use stats::Count;

@@ -66,11 +66,6 @@ impl<'a> Oriented<'a> {
     pub(crate) fn of_area(vertices: [&'a ScreenVertex; 3], area: i32) -> Self {
         Self { vertices: clockwise(vertices, area), area: area.unsigned_abs() }
     }
-
-    /// The same, rotated so that the nearest vertex is first.
-    pub(crate) fn nearest_first(&self) -> Self {
-        Self { vertices: nearest_first(self.vertices), area: self.area }
-    }
 }
 
 /// Twice the area of a triangle, in 1/256 px², from positions in 1/16 px; positive if they run clockwise on the screen.
@@ -86,7 +81,7 @@ pub(crate) fn clockwise<T>([a, b, c]: [T; 3], area: i32) -> [T; 3] {
 }
 
 /// Corners rotated so that the one with the greatest q is first. Of corners with the same q the earlier one is.
-fn nearest_first([a, b, c]: [&ScreenVertex; 3]) -> [&ScreenVertex; 3] {
+pub(crate) fn nearest_first([a, b, c]: [&ScreenVertex; 3]) -> [&ScreenVertex; 3] {
     if b.q > a.q && b.q >= c.q {
         [b, c, a]
     } else if c.q > a.q {

@@ -12,7 +12,7 @@ use super::packing::Packing;
 use super::scaling::Scaling;
 use super::straight::Straight;
 use super::triangle::TriangleSetup;
-use crate::geometry::{Inputs, Oriented, ScreenVertex};
+use crate::geometry::{Inputs, ScreenVertex};
 use core::fmt;
 
 /// The functions that set up what a shader reads.
@@ -20,8 +20,8 @@ pub(crate) struct InputCode {
     pub(crate) inputs: Inputs,
     /// All planes of a small triangle, twice its area given. False, and they are of no use, if the general way has to.
     pub(super) small: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs) -> bool,
-    /// All planes of any triangle, the nearest vertex of which is first.
-    pub(super) any: fn(&mut TriangleSetup, &Oriented<'_>, &Needs),
+    /// All planes of any triangle.
+    pub(super) any: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs),
     pub(super) uv: Option<UvCode>,
     /// Colours of a small triangle, as plain. Returns as `small` does.
     pub(super) small_color: Option<fn(&mut TriangleSetup, &SmallTriangle<'_>, ColorBend) -> bool>,

@@ -39,19 +39,12 @@ impl TriangleSetup {
             Small::Rows if (needs.code.small)(self, &from_top, triangle.area, needs) => true,
             other => {
                 let is_large = matches!(other, Small::Not);
-                if is_large && !rows.start_long(&triangle.vertices, window) {
+                if is_large && !rows.start_long(&from_top, window) {
                     return false;
                 }
-                self.set_any(triangle, needs);
+                (needs.code.any)(self, &from_top, triangle.area, needs);
                 true
             }
         }
-    }
-
-    /// Sets the planes of a triangle that is not small, or whose rows alone are.
-    #[cold]
-    #[inline(never)]
-    fn set_any(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        (needs.code.any)(self, &triangle.nearest_first(), needs);
     }
 }

@@ -143,7 +143,7 @@ impl Rows {
         if spans.start(&edges, window) { Small::Rows } else { Small::Hidden }
     }
 
-    /// Starts a triangle of any size, whose corners run clockwise. False if it has no rows, or only one, and that is empty. (True
+    /// Starts a triangle of any size, whose corners run clockwise from the uppermost on. False if it has no rows, or only one, and that is empty. (True
     /// does not mean that a pixel is covered.)
     #[inline(never)]
     pub(super) fn start_long(&mut self, corners: &[&ScreenVertex; 3], window: &Window) -> bool {
@@ -172,22 +172,9 @@ impl Rows {
 }
 
 impl LongRows {
-    /// As [`Rows::start_long`].
+    /// As [`Rows::start_long`]. From the uppermost corner a right edge leads down to `next` and a left one to `last`.
     #[inline(never)]
-    fn start(&mut self, [a, b, c]: &[&ScreenVertex; 3], window: &Window) -> bool {
-        if a.y <= b.y && a.y <= c.y {
-            self.start_at(a, b, c, window);
-        } else if b.y <= c.y {
-            self.start_at(b, c, a, window);
-        } else {
-            self.start_at(c, a, b, window);
-        }
-        !self.are_none()
-    }
-
-    /// Starts a triangle at its uppermost corner `top`. From there a right edge leads down to `next` and a left one to `last`.
-    #[inline(never)]
-    fn start_at(&mut self, top: &ScreenVertex, next: &ScreenVertex, last: &ScreenVertex, window: &Window) {
+    fn start(&mut self, &[top, next, last]: &[&ScreenVertex; 3], window: &Window) -> bool {
         let row_of = |vertex: &ScreenVertex| first_center(vertex.y.to_bits().into());
         let (next_row, last_row) = (row_of(next), row_of(last));
         let (row, mut end) =
@@ -202,7 +189,7 @@ impl LongRows {
         }
         (self.row, self.end) = (row, end as i16);
         if row >= end {
-            return;
+            return false;
         }
         if next_row > row {
             self.right.set(top, next, row);
@@ -216,12 +203,13 @@ impl LongRows {
             let (from, to) = if self.lower_side == Side::Right { (next, last) } else { (last, next) };
             self.lower.set(from, to, self.knee.max(row));
         }
+        !self.are_none()
     }
 
-    /// A quick test for triangles that cover no pixel of a band: whether there are no rows, or only one, and that is empty.
+    /// A quick test for triangles that cover no pixel of a band: whether there is only one row, and that is empty.
     fn are_none(&self) -> bool {
         let end = i32::from(self.end);
-        self.row >= end || self.row + 1 == end && end <= self.knee && self.left.x >= self.right.x
+        self.row + 1 == end && end <= self.knee && self.left.x >= self.right.x
     }
 
     /// The next row, and its span's start and end (exclusive), clipped to the window. The span may be empty.

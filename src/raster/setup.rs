@@ -56,25 +56,25 @@ use super::scaling::Scaling;
 use super::slopes::Slopes;
 use super::straight::{Bend, Straight};
 use super::triangle::{TriangleSetup, edges};
-use crate::geometry::Oriented;
+use crate::geometry::{ScreenVertex, nearest_first};
 use crate::math::recip::Reciprocal;
 use crate::num::{normalise, shift_round_short, wide};
 
 impl TriangleSetup {
-    /// Sets the plane of depth of any triangle, the nearest vertex of which is first, and those of attributes if any is read:
+    /// Sets the plane of depth of any triangle, and those of attributes if any is read:
     /// [`InputCode::any`](super::needs::InputCode).
     ///
     /// What is long is called from here, one after another, so that it is not on the stack together.
     #[inline(never)]
-    pub(super) fn set<const READS: bool>(&mut self, triangle: &Oriented<'_>, needs: &Needs) {
-        let vertices = &triangle.vertices;
+    pub(super) fn set<const READS: bool>(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
+        let vertices = &nearest_first(*vertices);
         self.set_corners(vertices);
         (self.is_small, self.sliver, self.leans, self.straight) = (false, false, false, true);
         if !READS && !needs.depth {
             return;
         }
-        self.area = Reciprocal::precise(triangle.area);
-        let mut slopes = Slopes::new(self, triangle.area);
+        self.area = Reciprocal::precise(area);
+        let mut slopes = Slopes::new(self, area);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));

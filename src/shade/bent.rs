@@ -27,11 +27,9 @@ impl Perspective<'_> {
         let Some((way, (size, down))) = self.start(near, steps) else {
             return Way::None;
         };
-        if steps == 0 {
-            self.set_pixel(near, None);
-        } else if self.setup.is_extreme && way != Way::Straight {
+        if self.setup.is_extreme && way != Way::Straight {
             // What is straight is held in the range by itself.
-            self.set_by_far_end(near, steps, way);
+            self.set_by_far_end(x, y, steps, way);
         } else {
             let is_table = way == Way::Table && self.units.form == Form::Modular;
             self.set_lines(steps, way, |attribute, _| {
@@ -169,11 +167,13 @@ impl Perspective<'_> {
     /// Where planes may leave the range: slopes come from both ends.
     #[cold]
     #[inline(never)]
-    fn set_by_far_end(&mut self, near: &Place, steps: u32, way: Way) {
-        self.set_ends(near, None, true);
-        let x = if self.setup.q_rises { near.x - steps as i32 } else { near.x + steps as i32 };
-        let far = self.place(x, near.y);
-        self.set_ends(&far, None, false);
+    fn set_by_far_end(&mut self, x: i32, y: i32, steps: u32, way: Way) {
+        let (start, end) = (x, x + steps as i32);
+        let [near, far] = if self.setup.q_rises { [end, start] } else { [start, end] };
+        let mut place = self.place(near, y);
+        self.set_ends(&place, None, true);
+        place = self.place(far, y);
+        self.set_ends(&place, None, false);
         self.set_by_ends(steps, way);
     }
 

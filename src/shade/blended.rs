@@ -58,7 +58,7 @@ pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, f
         return draw_filled(cover, fill);
     };
     let (setup, fog) = (cover.setup, cover.target.fog);
-    let line = &mut Perspective::new(setup, fill.units());
+    let line = &mut Perspective::new(setup, fill);
     let (fades_to, alpha) = (layers.code.fades_to, layering.alpha);
     draw_rows::<false, F, D>(cover, Blended { line, fill, setup, fog, fades_to, blend, alpha });
 }

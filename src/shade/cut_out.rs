@@ -6,7 +6,7 @@
 
 use super::bordered::{Clamped, LitClamped, LitMirrored, Mirrored};
 use super::channels::lit;
-use super::fill::{Each, Fill};
+use super::fill::Each;
 use super::kinds::sealed::Sealed;
 use super::kinds::{
     Base, ColorlessKind, Flat, Kind, LitKind, LitTextured, Opacity, TexelKind, Textured, whole,
@@ -130,12 +130,12 @@ impl<K: ColorlessKind> Kind for VertexAlpha<K> {
 
 fn opacity<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
     let fill = Each::<1, Q, u8, _>::new(|[alpha]: [i32; 1]| level(alpha));
-    Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
+    Perspective::new(setup, &fill).draw(x, y, to, &fill);
 }
 
 fn opacity_after_uv<Q: Quality>(setup: &TriangleSetup, [x, y]: [i32; 2], to: &mut [u8]) {
     let fill = Each::<3, Q, u8, _>::new(|[_, _, alpha]: [i32; 3]| level(alpha));
-    Perspective::new(setup, fill.units()).draw(x, y, to, &fill);
+    Perspective::new(setup, &fill).draw(x, y, to, &fill);
 }
 
 /// The nearest level of I16F16: corners that clipping makes of 255 may be a little less.

@@ -70,7 +70,7 @@ impl<F: PixelFormat, S: Shader<F>> Colors<F::Word> for In<'_, F, S> {
 pub(super) fn draw<F: PixelFormat, D: DepthFormat, S: Shader<F>>(shader: &S, cover: Cover<'_, '_, F, D>) {
     let setup = cover.setup;
     let draw = |fill: &dyn Fill<[i32; 5]>| {
-        let line = Perspective::new(setup, fill.units());
+        let line = Perspective::new(setup, fill);
         let fragments = Fragments { line, fill, shader };
         layered::draw(cover, &mut In::<F, S>(fragments, core::marker::PhantomData));
     };

@@ -82,7 +82,7 @@ pub(super) fn draw_filled<F: PixelFormat, D: DepthFormat>(
     cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<F::Word>,
 ) {
-    let line = Perspective::new(cover.setup, fill.units());
+    let line = Perspective::new(cover.setup, fill);
     draw(cover, &mut Filled { line, fill });
 }
 
@@ -91,7 +91,7 @@ pub(super) fn draw_some<F: PixelFormat, D: DepthFormat>(
     cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<Option<F::Word>>,
 ) {
-    let line = Perspective::new(cover.setup, fill.units());
+    let line = Perspective::new(cover.setup, fill);
     draw(cover, &mut Partial { line, fill });
 }
 

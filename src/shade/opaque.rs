@@ -89,7 +89,7 @@ impl<'f, F: PixelFormat> DrawRun<F::Word> for Fogged<'_, 'f, F> {
 /// Draws an opaque triangle.
 #[inline(never)]
 pub(super) fn draw<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, fill: &dyn Fill<F::Word>) {
-    let line = &mut Perspective::new(cover.setup, fill.units());
+    let line = &mut Perspective::new(cover.setup, fill);
     draw_rows::<true, F, D>(cover, Filled { line, fill });
 }
 
@@ -105,7 +105,7 @@ pub(super) fn draw_in_fog<F: PixelFormat, D: DepthFormat>(
     cover: Cover<'_, '_, F, D>,
     fill: &dyn Fill<F::Word>,
 ) {
-    let (setup, line) = (cover.setup, &mut Perspective::new(cover.setup, fill.units()));
+    let (setup, line) = (cover.setup, &mut Perspective::new(cover.setup, fill));
     if let Some(fog) = cover.target.fog {
         draw_rows::<true, F, D>(cover, Fogged { filled: Filled { line, fill }, setup, fog: &fog.fogging });
     }

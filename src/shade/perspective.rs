@@ -77,8 +77,10 @@ pub(crate) struct Perspective<'a> {
 }
 
 impl<'a> Perspective<'a> {
+    /// For a fill. It asks for the units itself, so that they are not on the stack twice.
     #[inline(never)]
-    pub(crate) fn new(setup: &'a TriangleSetup, mut units: Units) -> Self {
+    pub(crate) fn new<W>(setup: &'a TriangleSetup, fill: &dyn Fill<W>) -> Self {
+        let mut units = fill.units();
         let way = Self::way_of(setup, &mut units);
         Self { setup, way, units, zeros: 1, curve: Curve::default() }
     }

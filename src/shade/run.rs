@@ -58,7 +58,7 @@ impl<W> Run<'_, W> {
     fn draw(self, fill: &dyn Fill<W>) {
         let Span { setup, x, y } = self.span;
         if !self.pixels.is_empty() {
-            Perspective::new(setup, fill.units()).draw(x, y, self.pixels, fill);
+            Perspective::new(setup, fill).draw(x, y, self.pixels, fill);
         }
     }
 }
