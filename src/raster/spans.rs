@@ -140,6 +140,13 @@ impl Spans {
         self.table[row & (WIDEST - 1)]
     }
 
+    /// Leaves of a row of the table what begins at a column. Returns the row behind it.
+    #[inline]
+    pub(crate) fn leave(&mut self, row: usize, column: usize) -> usize {
+        self.table[row & (WIDEST - 1)][0] = column as u8;
+        row + 1
+    }
+
     /// A row of the table on the screen: the row, and its span's start and end (exclusive).
     #[inline]
     pub(crate) fn on_screen(&self, row: usize) -> [i32; 3] {

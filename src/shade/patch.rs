@@ -16,6 +16,7 @@ use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::{IS_ARMV6M, U1F31};
 use crate::raster::Rows;
 use core::hint::black_box;
+use core::ops::Range;
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
     #[inline(never)]
@@ -27,7 +28,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
         let setup = if IS_ARMV6M { black_box(setup) } else { setup };
         let Target { rows, origin, width, pixels, depth, .. } = target;
         let width = *width;
-        let (Rows::Short(spans), Some(attributes)) = (&*rows, setup.attributes.first_chunk::<N>()) else {
+        let (Rows::Short(spans), Some(attributes)) = (rows, setup.attributes.first_chunk::<N>()) else {
             return;
         };
         // So that both are known to be as long.
@@ -41,42 +42,49 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
         let longest = setup.longest as usize + 1;
         let steps = || core::array::from_fn(|i| attributes[i].plane.steps[0]);
         let plain_step = fill.step(steps());
-        for n in spans.rows().rev() {
-            let [mut start, end] = spans.span(n).map(usize::from);
-            // One run of visible pixels after another; mostly it is all of the row.
-            while start < end {
-                let mut count = if L::BENDS { (end - start).min(longest) } else { end - start };
-                let first = origin.wrapping_add(n * width).wrapping_add(start);
-                // In two steps: the end of a range is checked more dearly.
-                let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+        let Range { start: first_row, end: mut n } = spans.rows();
+        while n > first_row {
+            n -= 1;
+            let this = n;
+            let [start, end] = spans.span(this).map(usize::from);
+            if start >= end {
+                continue;
+            }
+            let (x, y) = (column + start as i32, row + this as i32);
+            let mut count = end - start;
+            // What is left of a row comes next, as a row of its own: so the loop knows nothing of parts.
+            if L::BENDS && count > longest {
+                count = longest;
+                n = spans.leave(this, start + count);
+            }
+            let first = origin.wrapping_add(this * width).wrapping_add(start);
+            // In two steps: the end of a range is checked more dearly.
+            let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+                return;
+            };
+            if !D::ALWAYS_PASSES {
+                let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                     return;
                 };
-                let (x, y) = (column + start as i32, row + n as i32);
-                start += count;
-                if !D::ALWAYS_PASSES {
-                    let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
-                        return;
-                    };
-                    let z = (setup.z.at(x, y), setup.z.steps[0]);
-                    let left = tested::<D>(depth, z);
-                    if left > 0 {
-                        count -= left;
-                        start -= left - hidden::<D>(depth, z, count);
-                        if count == 0 {
-                            continue;
-                        }
-                        pixels = pixels.get_mut(..count).unwrap_or_default();
+                let z = (setup.z.at(x, y), setup.z.steps[0]);
+                let left = tested::<D>(depth, z);
+                if left > 0 {
+                    count -= left;
+                    n = spans.leave(this, start + count + hidden::<D>(depth, z, count));
+                    if count == 0 {
+                        continue;
                     }
+                    pixels = pixels.get_mut(..count).unwrap_or_default();
                 }
-                let at = core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
-                let (at, step) = if L::BENDS && setup.is_bent {
-                    fill.bent(setup, ([x, y], count as i32 - 1), at, steps())
-                } else {
-                    let step = if L::PACKS { plain_step } else { fill.step(steps()) };
-                    (fill.at(at, step), step)
-                };
-                fill.row(pixels, at, step);
             }
+            let at = core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
+            let (at, step) = if L::BENDS && setup.is_bent {
+                fill.bent(setup, ([x, y], count as i32 - 1), at, steps())
+            } else {
+                let step = if L::PACKS { plain_step } else { fill.step(steps()) };
+                (fill.at(at, step), step)
+            };
+            fill.row(pixels, at, step);
         }
     }
 }
