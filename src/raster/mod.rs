@@ -29,6 +29,6 @@ pub(crate) use needs::{InputCode, Needs};
 pub(crate) use packing::Packing;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;
-pub(crate) use spans::WIDEST;
+pub(crate) use spans::{Spans, WIDEST};
 pub(crate) use straight::Straight;
 pub(crate) use triangle::{ATTRIBUTES, TriangleSetup};

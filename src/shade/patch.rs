@@ -14,7 +14,7 @@ use super::cover::{Cover, Target};
 use super::fill::{Fill, FillRow};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::{IS_ARMV6M, U1F31};
-use crate::raster::Rows;
+use crate::raster::{Rows, Spans, TriangleSetup};
 use core::hint::black_box;
 use core::ops::Range;
 
@@ -36,9 +36,11 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
         let Some(pixels) = pixels.get_mut(..length) else {
             return;
         };
-        let depth = depth.get_mut(..length).unwrap_or_default();
+        let all_depth = depth.get_mut(..length).unwrap_or_default();
         let (row, column) = (i32::from(spans.row), i32::from(spans.column));
-        let origin = origin.wrapping_add((row as usize).wrapping_mul(width)).wrapping_add(column as usize);
+        let origin = *origin;
+        let first_of_row_0 =
+            origin.wrapping_add((row as usize).wrapping_mul(width)).wrapping_add(column as usize);
         let longest = setup.longest as usize + 1;
         let steps = || core::array::from_fn(|i| attributes[i].plane.steps[0]);
         let plain_step = fill.step(steps());
@@ -57,20 +59,27 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
                 count = longest;
                 n = spans.leave(this, start + count);
             }
-            let first = origin.wrapping_add(this * width).wrapping_add(start);
+            let first = first_of_row_0.wrapping_add(this * width).wrapping_add(start);
             // In two steps: the end of a range is checked more dearly.
             let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                 return;
             };
             if !D::ALWAYS_PASSES {
-                let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+                let Some(depth) = all_depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                     return;
                 };
                 let z = (setup.z.at(x, y), setup.z.steps[0]);
                 let left = tested::<D>(depth, z);
                 if left > 0 {
-                    count -= left;
-                    n = spans.leave(this, start + count + hidden::<D>(depth, z, count));
+                    count = skip_hidden::<D>(
+                        setup,
+                        spans,
+                        all_depth,
+                        [origin, width],
+                        [x, y],
+                        [pixels.len(), left],
+                    );
+                    n = this + 1;
                     if count == 0 {
                         continue;
                     }
@@ -89,22 +98,35 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
     }
 }
 
-/// How many pixels are hidden side by side, from one on that is known to be.
+/// Leaves of a row what follows its hidden pixels. Of a run of so many pixels from (x, y) on the last `left` were not tested, but for the
+/// first of them, which is hidden. Returns how many are visible before that.
 ///
-/// A format is asked once to test and store for each pixel of a triangle, as one that counts them expects.
+/// It finds all anew, so that nothing is kept for it. A format is asked once to test and store for each pixel of a triangle, as one that
+/// counts them expects.
 #[cold]
 #[inline(never)]
-fn hidden<D: DepthFormat>(depth: &mut [D::Word], (near_w, step): (u32, i32), first: usize) -> usize {
-    let mut count = 1;
-    for (n, stored) in depth.iter_mut().enumerate().skip(first + 1) {
-        let near_w = U1F31::from_bits(near_w.wrapping_add_signed(step.wrapping_mul(n as i32)));
+fn skip_hidden<D: DepthFormat>(
+    setup: &TriangleSetup,
+    spans: &mut Spans,
+    depth: &mut [D::Word],
+    [origin, width]: [usize; 2],
+    [x, y]: [i32; 2],
+    [count, left]: [usize; 2],
+) -> usize {
+    let visible = count - left;
+    let x = x + visible as i32;
+    let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(x as usize);
+    let mut hidden = 1;
+    for stored in depth.iter_mut().skip(first + 1).take(left - 1) {
+        let near_w = U1F31::from_bits(setup.z.at(x + hidden, y));
         if D::test(stored, near_w) {
             break;
         }
         D::test_and_store_small(stored, near_w);
-        count += 1;
+        hidden += 1;
     }
-    count
+    spans.leave((y - i32::from(spans.row)) as usize, (x + hidden - i32::from(spans.column)) as usize);
+    visible
 }
 
 /// Tests depths up to the first pixel that is hidden, and stores those before it. How many there are from that one on.
