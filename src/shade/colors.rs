@@ -6,10 +6,11 @@
 
 use super::channels::Channels;
 use super::curve::{Curve, Ts};
-use super::fill::{Fill, FillRow, draw_row, some_of};
+use super::fill::{Fill, FillRow, draw_row, draw_row_tested, some_of};
 use super::inverses::ONE_LOG2;
 use super::units::Units;
-use crate::frame::PixelFormat;
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::num::IS_ARMV6M;
 use core::hint::black_box;
 use core::marker::PhantomData;
 
@@ -99,5 +100,18 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F,
     #[inline]
     fn row(&self, pixels: &mut [F::Word], at: C, step: C) {
         draw_row(pixels, at, step, |at| at.word::<F>());
+    }
+
+    const FUSES: bool = !IS_ARMV6M;
+
+    #[inline(always)]
+    fn row_tested<D: DepthFormat>(
+        &self,
+        pixels: &mut [F::Word],
+        depth: &mut [D::Word],
+        near_w: (u32, i32),
+        along: (C, C),
+    ) -> usize {
+        draw_row_tested::<_, D, _>(pixels, depth, near_w, along, |at| at.word::<F>())
     }
 }

@@ -11,6 +11,8 @@
 use super::curve::{Curve, distance};
 use super::quality::Quality;
 use super::units::{Form, Units};
+use crate::frame::DepthFormat;
+use crate::num::U1F31;
 use crate::raster::{ATTRIBUTES, TriangleSetup};
 use core::hint::black_box;
 use core::marker::PhantomData;
@@ -71,6 +73,67 @@ pub trait FillRow<const N: usize> {
 
     /// At most so many pixels side by side.
     fn row(&self, pixels: &mut [Self::Word], at: Self::At, step: Self::Step);
+
+    /// Whether [`row_tested`](Self::row_tested) is faster than to test all pixels of a row first, and then to draw them: so it is where
+    /// there are registers for the variables of both.
+    const FUSES: bool = false;
+
+    /// As `row`, but tests depth before each pixel, near/w being `near_w.0` with a step of `near_w.1`, up to the first that is hidden.
+    /// Returns how many are left from that one on.
+    fn row_tested<D: DepthFormat>(
+        &self,
+        pixels: &mut [Self::Word],
+        depth: &mut [D::Word],
+        near_w: (u32, i32),
+        (at, step): (Self::At, Self::Step),
+    ) -> usize {
+        let left = tested::<D>(depth, near_w);
+        self.row(pixels.get_mut(..depth.len() - left).unwrap_or_default(), at, step);
+        left
+    }
+}
+
+/// Tests depths up to the first pixel that is hidden, and stores those before it. How many there are from that one on.
+#[inline(always)]
+pub(crate) fn tested<D: DepthFormat>(depth: &mut [D::Word], (mut near_w, step): (u32, i32)) -> usize {
+    let mut depth = depth.iter_mut();
+    loop {
+        let left = depth.len();
+        let Some(stored) = depth.next() else {
+            return 0;
+        };
+        if !D::test_and_store_small(stored, U1F31::from_bits(near_w)) {
+            return left;
+        }
+        near_w = near_w.wrapping_add_signed(step);
+        // Not unrolled, which does not pay for a few pixels.
+        black_box(());
+    }
+}
+
+/// [`FillRow::row_tested`] in one loop.
+#[inline(always)]
+pub(crate) fn draw_row_tested<W, D: DepthFormat, A: Steps>(
+    pixels: &mut [W],
+    depth: &mut [D::Word],
+    (mut near_w, near_w_step): (u32, i32),
+    (mut at, step): (A, A),
+    word: impl Fn(A) -> W,
+) -> usize {
+    let mut both = pixels.iter_mut().zip(depth);
+    loop {
+        let left = both.len();
+        let Some((pixel, stored)) = both.next() else {
+            return 0;
+        };
+        if !D::test_and_store_small(stored, U1F31::from_bits(near_w)) {
+            return left;
+        }
+        near_w = near_w.wrapping_add_signed(near_w_step);
+        *pixel = word(at);
+        at = at.plus(step);
+        black_box(());
+    }
 }
 
 /// What can be stepped from pixel to pixel.

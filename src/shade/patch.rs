@@ -11,7 +11,7 @@
 //! All that belongs to a row is a product with its number: nothing is carried from row to row.
 
 use super::cover::{Cover, Target};
-use super::fill::{Fill, FillRow};
+use super::fill::{Fill, FillRow, tested};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::{IS_ARMV6M, U1F31};
 use crate::raster::{Rows, Spans, TriangleSetup};
@@ -64,33 +64,37 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
             let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                 return;
             };
+            let at = || core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
+            let step = || if L::PACKS { plain_step } else { fill.step(steps()) };
             if !D::ALWAYS_PASSES {
                 let Some(depth) = all_depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                     return;
                 };
-                let z = (setup.z.at(x, y), setup.z.steps[0]);
-                let left = tested::<D>(depth, z);
+                let near_w = (setup.z.at(x, y), setup.z.steps[0]);
+                let left = if L::FUSES {
+                    let step = step();
+                    fill.row_tested::<D>(pixels, depth, near_w, (fill.at(at(), step), step))
+                } else {
+                    tested::<D>(depth, near_w)
+                };
                 if left > 0 {
-                    count = skip_hidden::<D>(
-                        setup,
-                        spans,
-                        all_depth,
-                        [origin, width],
-                        [x, y],
-                        [pixels.len(), left],
-                    );
+                    let hidden = [pixels.len(), left];
+                    count = skip_hidden::<D>(setup, spans, all_depth, [origin, width], [x, y], hidden);
                     n = this + 1;
                     if count == 0 {
                         continue;
                     }
                     pixels = pixels.get_mut(..count).unwrap_or_default();
                 }
+                if L::FUSES {
+                    continue;
+                }
             }
-            let at = core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
+            let at = at();
             let (at, step) = if L::BENDS && setup.is_bent {
                 fill.bent(setup, ([x, y], count as i32 - 1), at, steps())
             } else {
-                let step = if L::PACKS { plain_step } else { fill.step(steps()) };
+                let step = step();
                 (fill.at(at, step), step)
             };
             fill.row(pixels, at, step);
@@ -127,22 +131,4 @@ fn skip_hidden<D: DepthFormat>(
     }
     spans.leave((y - i32::from(spans.row)) as usize, (x + hidden - i32::from(spans.column)) as usize);
     visible
-}
-
-/// Tests depths up to the first pixel that is hidden, and stores those before it. How many there are from that one on.
-#[inline(always)]
-fn tested<D: DepthFormat>(depth: &mut [D::Word], (mut near_w, step): (u32, i32)) -> usize {
-    let mut depth = depth.iter_mut();
-    loop {
-        let left = depth.len();
-        let Some(stored) = depth.next() else {
-            return 0;
-        };
-        if !D::test_and_store_small(stored, U1F31::from_bits(near_w)) {
-            return left;
-        }
-        near_w = near_w.wrapping_add_signed(step);
-        // Not unrolled, which does not pay for a few pixels.
-        black_box(());
-    }
 }
