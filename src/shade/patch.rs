@@ -78,9 +78,8 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
                     tested::<D>(depth, near_w)
                 };
                 if left > 0 {
-                    let hidden = [pixels.len(), left];
-                    count = skip_hidden::<D>(setup, spans, all_depth, [origin, width], [x, y], hidden);
-                    n = this + 1;
+                    let hidden = [count, left];
+                    (count, n) = skip_hidden::<D>(setup, spans, all_depth, [origin, width], [x, y], hidden);
                     if count == 0 {
                         continue;
                     }
@@ -116,7 +115,7 @@ fn skip_hidden<D: DepthFormat>(
     [origin, width]: [usize; 2],
     [x, y]: [i32; 2],
     [count, left]: [usize; 2],
-) -> usize {
+) -> (usize, usize) {
     let visible = count - left;
     let x = x + visible as i32;
     let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(x as usize);
@@ -129,6 +128,7 @@ fn skip_hidden<D: DepthFormat>(
         D::test_and_store_small(stored, near_w);
         hidden += 1;
     }
-    spans.leave((y - i32::from(spans.row)) as usize, (x + hidden - i32::from(spans.column)) as usize);
-    visible
+    let next =
+        spans.leave((y - i32::from(spans.row)) as usize, (x + hidden - i32::from(spans.column)) as usize);
+    (visible, next)
 }
