@@ -75,6 +75,7 @@ impl TriangleSetup {
         }
         self.area = Reciprocal::precise(area);
         let mut slopes = Slopes::new(self, area);
+        slopes.find_middle(self);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
         // The nearest corner gets all 31 bits.
         let q = near_w.map(|q| q.clamp(1, i32::MAX as u32));

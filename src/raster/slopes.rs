@@ -44,7 +44,6 @@ impl Slopes {
         let weight =
             |e: i32| ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift));
         let pixel = a.map(|at| at >> 4);
-        let extents = [0, 1].map(|axis| setup.extent(axis));
         Self {
             // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of
             // 2^−`fraction_bits` a pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
@@ -54,8 +53,18 @@ impl Slopes {
             fraction_bits: shift as i32 - 5 - zeros as i32,
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
-            to_middle: [0, 1].map(|axis| ((extents[axis][0] + extents[axis][1]) >> 1) - pixel[axis]),
-            size: extents.iter().map(|[first, last]| last - first).sum::<i32>() as u32,
+            to_middle: [0; 2],
+            size: 0,
+        }
+    }
+
+    /// Finds the middle, and columns and rows: apart, so that it is not on the stack together with the rest.
+    #[inline(never)]
+    pub(super) fn find_middle(&mut self, setup: &TriangleSetup) {
+        for axis in 0..2 {
+            let [first, last] = setup.extent(axis);
+            self.to_middle[axis] = ((first + last) >> 1) - self.pixel[axis];
+            self.size += (last - first) as u32;
         }
     }
 

@@ -162,7 +162,7 @@ impl<'a> Perspective<'a> {
             if way == Way::Chords {
                 return fill.chords(pixels, &self.curve);
             }
-            if way != Way::Bent {
+            if !IS_ARMV6M || way != Way::Bent {
                 return self.draw_parts(x, y, pixels, fill);
             }
             // From here: so it is not on the stack together with what asks for it. (The length is hidden, so that it is not kept.)
@@ -182,7 +182,7 @@ impl<'a> Perspective<'a> {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
                 let (x, steps) = (x + skipped as i32, count as u32 - 1);
                 let way = match (self.way)(self, x, y, steps) {
-                    Way::Bent => self.bent(x, y, steps),
+                    Way::Bent if IS_ARMV6M => self.bent(x, y, steps),
                     way => way,
                 };
                 if way != Way::None {
@@ -217,7 +217,7 @@ impl<'a> Perspective<'a> {
             // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
             let fall = steps * q_step.unsigned_abs();
             if steps * fall > m >> zeros >> 3 {
-                return Way::Bent;
+                return self.ask_bent(x, y, steps);
             }
             // Taken as constant, q moves a row by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
             bends = fall > 1 << 12;
@@ -256,6 +256,12 @@ impl<'a> Perspective<'a> {
         }
     }
 
+    /// What [`bent`](Self::bent) says. A Cortex-M4 jumps there, and leaves the stack to it; on Armv6-M, which cannot, the caller asks.
+    #[inline(always)]
+    fn ask_bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        if IS_ARMV6M { Way::Bent } else { self.bent(x, y, steps) }
+    }
+
     /// Where the horizon is near.
     #[inline(never)]
     fn near_horizon(&mut self, x: i32, y: i32, steps: u32) -> Way {
@@ -268,7 +274,7 @@ impl<'a> Perspective<'a> {
         let w_step = if down < 32 { size >> down } else { 0 };
         // w is to stay above 1/8: its whole fall, 22 fraction bits, is at most 7/8.
         if w_step < NEAR_STEP || (w_step >> 10) * steps > 7 << 19 {
-            return Way::Bent;
+            return self.ask_bent(x, y, steps);
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
         // On a Cortex-M4 it is faster inlined, by 3 % in long rows.
