@@ -142,7 +142,7 @@ impl TriangleSetup {
         if self.straight
             && let Some(uv) = &needs.code.uv
         {
-            (uv.complete)(self, vertices, &scaling, is_exact.then_some(slopes.fraction_bits));
+            (uv.complete)(self, vertices, &scaling, is_exact.then(|| slopes.fraction_bits()));
         }
     }
 

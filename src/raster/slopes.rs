@@ -13,9 +13,9 @@ use crate::num::{mul_round, normalise};
 pub(super) struct Slopes {
     /// Whether planes hold the values at the corners: see [`TriangleSetup::sliver`].
     pub(super) sliver: bool,
-    /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`).
+    /// Over one column, over one row, in units of 2^−(32 + `fraction_bits`) of that axis.
     of_weights: [[i32; 2]; 2],
-    pub(super) fraction_bits: i32,
+    fraction_bits: [i8; 2],
     /// Corner 0's pixel.
     pixel: [i32; 2],
     /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
@@ -36,21 +36,21 @@ impl Slopes {
         let (edges, a) = (edges(&corners), corners[0]);
         let spread = |e: [i32; 2]| (e[0].abs() + e[1].abs()) as u32; // below 2¹⁶
         let (height, width) = (spread(edges[0]), spread(edges[1]));
-        // The largest difference to 30 bits, times 1/area.
-        let largest = edges.as_flattened().iter().fold(1, |all, e| all | e.unsigned_abs());
-        let shift = normalise(largest).1 - 2;
+        // Of each axis the largest difference to 30 bits, times 1/area: over columns there are more of them the less high it is.
+        let shifts = edges.map(|[b, c]| normalise(b.unsigned_abs() | c.unsigned_abs() | 1).1 - 2);
         let Reciprocal { mantissa, zeros } = setup.area;
         // (e·2^shift · mantissa) / 2³¹, by halves of the mantissa: e is below 2¹⁵, and so `shift` at least 15.
-        let weight =
-            |e: i32| ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift));
+        let weight = |e: i32, shift: u32| {
+            ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift))
+        };
         let pixel = a.map(|at| at >> 4);
         Self {
-            // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of
-            // 2^−`fraction_bits` a pixel, must not exceed 256 units over the triangle's extent of 2^(30 − `shift`) sixteenths.
-            sliver: height.max(width) * 16 > area || 2 * shift < 23 + zeros,
-            of_weights: edges.map(|edge| edge.map(weight)),
+            // Steps must fit 32 bits: at least a pixel wide and high. And their errors, one and a half unit of 2^−`fraction_bits` a
+            // pixel, must not exceed 384 units along an axis: it is less than 2^(26 − `shift` of the other one) pixels long.
+            sliver: height.max(width) * 16 > area || shifts[0] + shifts[1] < 23 + zeros,
+            of_weights: [0, 1].map(|axis| edges[axis].map(|e| weight(e, shifts[axis]))),
             // A weight · 2^−(32 + n) = 16·e·mantissa·2^(zeros − 62)
-            fraction_bits: shift as i32 - 5 - zeros as i32,
+            fraction_bits: shifts.map(|shift| (shift as i32 - 5 - zeros as i32) as i8),
             pixel,
             to_center: [pixel[0] * 16 + 8 - a[0], pixel[1] * 16 + 8 - a[1]],
             to_middle: [0; 2],
@@ -68,6 +68,11 @@ impl Slopes {
         }
     }
 
+    /// The fraction bits of slopes, along the axis where there are fewer.
+    pub(super) fn fraction_bits(&self) -> i32 {
+        self.fraction_bits[0].min(self.fraction_bits[1]).into()
+    }
+
     /// Completes a plane whose `origin` holds the value at corner 0, from the rise to corners 1 and 2.
     #[inline(never)]
     pub(super) fn set_plane(&self, plane: &mut Plane, rise: [i32; 2]) {
@@ -78,7 +83,7 @@ impl Slopes {
         for axis in 0..2 {
             let [b, c] = self.of_weights[axis];
             let slope = mul_round::<32>(rise[0], b).wrapping_add(mul_round::<32>(rise[1], c));
-            let bits = self.fraction_bits;
+            let bits = i32::from(self.fraction_bits[axis]);
             let (step, rest) = if bits > 0 {
                 let step = ((slope >> (bits - 1)) + 1) >> 1;
                 // What rounding leaves, with at most 12 of its bits, as far as the middle is away.
