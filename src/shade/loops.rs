@@ -126,6 +126,47 @@ impl<'a> Loops<'a> {
     }
 }
 
+/// Along a straight line of packed coordinates, in blocks so short that truncated steps do not matter: of a texture's size, and
+/// so many pixels.
+#[inline(always)]
+fn line_in_blocks<F: PixelFormat>(
+    mut pixels: &mut [F::Word],
+    line: &Curve,
+    ([a, b], block_log2): ([u32; 2], u32),
+    draw: impl Fn(&mut [F::Word], u32, u32),
+) {
+    let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
+    let (mut u, mut v) = (u as i32, v as i32);
+    let log2 = block_log2 & 31;
+    let mut step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
+    if !IS_ARMV6M {
+        // Hidden: multiples of it would be computed apart.
+        step = black_box(step);
+    }
+    loop {
+        let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
+        draw(block, packed_from([u >> a, v >> b], u_step), step);
+        if rest.is_empty() {
+            return;
+        }
+        pixels = rest;
+        (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+    }
+}
+
+/// As [`Loops::line`], unrolled.
+#[inline(always)]
+fn unrolled<F: PixelFormat>(pixels: &mut [F::Word], mut packed: u32, step: u32, texel: &impl Fn(u32) -> u16) {
+    let (blocks, rest) = pixels.as_chunks_mut::<8>();
+    for block in blocks {
+        for pixel in block {
+            *pixel = F::rgb565(texel(packed));
+            packed = packed.wrapping_add(step);
+        }
+    }
+    draw_row(rest, packed, step, |packed| F::rgb565(texel(packed)));
+}
+
 impl Loops<'_> {
     /// Along a straight line, from packed coordinates on. Not unrolled.
     #[inline(never)]
@@ -138,49 +179,26 @@ impl Loops<'_> {
         draw_row(pixels, packed, step, |packed| F::rgb565(texture.fetch_packed(packed)));
     }
 
-    /// Along a straight line of packed coordinates, in blocks so short that truncated steps do not matter.
+    /// Along a straight line of packed coordinates.
     #[inline(always)]
-    fn line_in_blocks<F: PixelFormat>(&self, mut pixels: &mut [F::Word], line: &Curve) {
-        let [a, b] = self.texture.log2();
-        let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
-        let (mut u, mut v) = (u as i32, v as i32);
-        let log2 = self.block_log2 & 31;
-        let step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
-        loop {
-            let (block, rest) = pixels.split_at_mut(pixels.len().min(1 << log2));
-            let packed = packed_from([u >> a, v >> b], u_step);
-            match self.known {
-                Known::Of64x64(texels) | Known::Of4096(texels) => {
-                    self.line_of_4096::<F>(block, texels, packed, step)
-                }
-                _ => self.line::<F>(block, packed, step),
-            }
-            if rest.is_empty() {
-                return;
-            }
-            pixels = rest;
-            (u, v) = (u.wrapping_add(u_step << log2), v.wrapping_add(v_step << log2));
+    fn line_packed<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
+        // With the size of most textures as constants, where that is faster.
+        if let Known::Of64x64(texels) = self.known
+            && !IS_ARMV6M
+        {
+            let texel = squared::<6, _>(self.texture, texels);
+            let log2 = ([6; 2], 6);
+            return line_in_blocks::<F>(pixels, line, log2, |block, packed, step| {
+                unrolled::<F>(block, packed, step, &texel);
+            });
         }
-    }
-
-    /// As [`Loops::line`], of 4096 texels.
-    #[inline(always)]
-    fn line_of_4096<F: PixelFormat>(
-        &self,
-        pixels: &mut [F::Word],
-        texels: &[u16; 0x1000],
-        mut packed: u32,
-        step: u32,
-    ) {
-        let texel = sized(self.texture, texels);
-        let (blocks, rest) = pixels.as_chunks_mut::<8>();
-        for block in blocks {
-            for pixel in block {
-                *pixel = F::rgb565(texel(packed));
-                packed = packed.wrapping_add(step);
+        let log2 = (self.texture.log2(), self.block_log2.into());
+        line_in_blocks::<F>(pixels, line, log2, |block, packed, step| match self.known {
+            Known::Of64x64(texels) | Known::Of4096(texels) => {
+                unrolled::<F>(block, packed, step, &sized(self.texture, texels));
             }
-        }
-        draw_row(rest, packed, step, |packed| F::rgb565(texel(packed)));
+            _ => self.line::<F>(block, packed, step),
+        });
     }
 
     /// Along a straight line of coordinates that are not packed.
@@ -316,7 +334,7 @@ impl Loops<'_> {
         if !self.is_packed {
             return self.line_unpacked::<F>(pixels, line);
         }
-        self.line_in_blocks::<F>(pixels, line);
+        self.line_packed::<F>(pixels, line);
     }
 
     #[inline]
