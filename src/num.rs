@@ -143,6 +143,13 @@ pub(crate) const fn mul_high(a: i32, b: u32) -> i32 {
     if IS_ARMV6M { mul_high_split(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
+/// Likewise, for a `b` that is not negative: one instruction on most cores.
+#[inline]
+pub(crate) const fn mul_high_signed(a: i32, b: i32) -> i32 {
+    debug_assert!(b >= 0);
+    if IS_ARMV6M { mul_high_split(a, b as u32) } else { ((a as i64 * b as i64) >> 32) as i32 }
+}
+
 #[inline]
 const fn mul_high_split(a: i32, b: u32) -> i32 {
     let (a_high, a_low) = (a >> 16, a as u32 & 0xffff);

@@ -102,6 +102,13 @@ pub(crate) fn looked_up(m: u32) -> u32 {
     left - fall
 }
 
+/// As [`looked_up`], but 2³¹ − 1 at most, which fits an `i32`.
+#[inline]
+pub(crate) fn looked_up_signed(m: u32) -> i32 {
+    let inverse = looked_up(m);
+    (inverse - (inverse >> 31)) as i32
+}
+
 /// The exact quotient and remainder, from a quotient that is off by at most a few.
 #[inline]
 fn corrected(mut quotient: i32, numerator: i32, divisor: i32) -> (i32, i32) {

@@ -6,7 +6,7 @@
 
 use super::plane::Plane;
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_17, mul_high, wide};
+use crate::num::{mul_17, mul_high_signed, wide};
 use core::hint::black_box;
 
 /// (u − u₀)·q, and the way back to u.
@@ -38,8 +38,8 @@ const _: () = assert!(size_of::<Attribute>() == 32);
 pub(crate) struct Place {
     pub(crate) x: i32,
     pub(crate) y: i32,
-    /// 1/q, as [`looked_up`](crate::math::recip::looked_up) has it of q's mantissa, and the leading zeros of q.
-    pub(crate) reciprocal: u32,
+    /// 1/q, as [`looked_up_signed`](crate::math::recip::looked_up_signed) has it of q's mantissa, and the leading zeros of q.
+    pub(crate) reciprocal: i32,
     pub(crate) zeros: u32,
 }
 
@@ -142,10 +142,10 @@ impl Attribute {
 
     /// Likewise, from the plane's value.
     #[inline]
-    pub(crate) fn divided(&self, value: i32, reciprocal: u32, zeros: u32) -> i32 {
+    pub(crate) fn divided(&self, value: i32, reciprocal: i32, zeros: u32) -> i32 {
         // Values at corners are within ±(2³⁰ − 2¹⁵), those between too but for rounding: less than 2¹¹ units, see
         // [set-up](super::setup).
-        let product = mul_high(value, reciprocal);
+        let product = mul_high_signed(value, reciprocal);
         let down = self.shift() - 2 - zeros as i32;
         self.bounded(if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) })
     }

@@ -11,8 +11,8 @@ use super::inverses::{ONE_LOG2, inverse};
 use super::packed::shifted;
 use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
-use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{IS_ARMV6M, mul_high, normalised, wide};
+use crate::math::recip::{Reciprocal, looked_up_signed};
+use crate::num::{IS_ARMV6M, mul_high, mul_high_signed, normalised, wide};
 use crate::raster::{Attribute, Place};
 use core::hint::black_box;
 
@@ -93,7 +93,7 @@ impl Perspective<'_> {
     fn place_in_sliver(&mut self, x: i32, place: &mut Place, weights: &mut [u32; 2]) {
         *weights = self.setup.weights(x, place.y);
         let (m, zeros) = self.mantissa_of(self.setup.q().weighted(weights));
-        *place = Place { x, y: place.y, reciprocal: looked_up(m), zeros };
+        *place = Place { x, y: place.y, reciprocal: looked_up_signed(m), zeros };
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
@@ -105,7 +105,7 @@ impl Perspective<'_> {
         }
         let (setup, rises) = (self.setup, self.setup.q_rises);
         let (q_step, q_step_zeros) = setup.q_step();
-        let size = mul_high((q_step >> 1) as i32, near.reciprocal) as u32;
+        let size = mul_high_signed((q_step >> 1) as i32, near.reciprocal) as u32;
         let down = q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3) as i32;
         if down < -3 || down == -3 && size > 7 << 26 {
             return None;

@@ -42,8 +42,8 @@ use super::fill::Fill;
 use super::inverses::ONE_LOG2;
 use super::level::{level, level_further};
 use super::units::{Form, Units};
-use crate::math::recip::looked_up;
-use crate::num::{IS_ARMV6M, mul_high, normalise};
+use crate::math::recip::looked_up_signed;
+use crate::num::{IS_ARMV6M, mul_high_signed, normalise};
 use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 use core::hint::black_box;
 
@@ -122,7 +122,7 @@ impl<'a> Perspective<'a> {
     #[inline(always)]
     pub(super) fn place(&mut self, x: i32, y: i32) -> Place {
         let (m, zeros) = self.q_at(x, y);
-        Place { x, y, reciprocal: looked_up(m), zeros }
+        Place { x, y, reciprocal: looked_up_signed(m), zeros }
     }
 
     /// The near end of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
@@ -227,7 +227,7 @@ impl<'a> Perspective<'a> {
         if steps == 1 && self.setup.attributes.iter().take(self.units.count()).any(is_steep) {
             return Way::None;
         }
-        let reciprocal = looked_up(m);
+        let reciprocal = looked_up_signed(m);
         let (count, place) = (self.units.count(), Place { x, y, reciprocal, zeros });
         if bends {
             self.level_bending(&place, q_step, steps);
@@ -268,7 +268,7 @@ impl<'a> Perspective<'a> {
         let setup = self.setup;
         let near = self.near(x, y, steps);
         let (q_step, q_step_zeros) = setup.q_step();
-        let size = mul_high((q_step >> 1) as i32, near.reciprocal) as u32;
+        let size = mul_high_signed((q_step >> 1) as i32, near.reciprocal) as u32;
         let down = q_step_zeros.wrapping_sub(near.zeros).wrapping_sub(3);
         // What does not fit is for `bent`.
         let w_step = if down < 32 { size >> down } else { 0 };
