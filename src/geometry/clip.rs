@@ -19,7 +19,7 @@
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide};
+use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide, zeros_of};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::hint::black_box;
 use core::ops::RangeInclusive;
@@ -111,7 +111,7 @@ impl Clip {
             let range = Reciprocal::precise(far.saturating_sub(near).max(1) as u32);
             (range.mantissa, range.zeros as i32 - 1)
         } else {
-            let zeros = projection.near.to_bits().leading_zeros() as i32;
+            let zeros = zeros_of(projection.near.to_bits() as u32) as i32;
             (projection.near.to_bits() << (zeros - 1), zeros + 16 - unit_bits)
         };
         let least = least_w(projection, unit_bits);
@@ -190,7 +190,7 @@ impl Clip {
             let slope = side * 16 - projection.center[axis];
             // Not unrolled.
             black_box(());
-            self.reaches(to_clip, [center[axis], w], radius, (axis, if is_end { 1 } else { -1 }, slope))
+            self.reaches(to_clip, [center[axis], w], radius, (axis, is_end, slope))
         });
         is_seen.then_some(center)
     }
@@ -203,9 +203,10 @@ impl Clip {
         to_clip: &ToClip,
         [across, w]: [i32; 2],
         radius: u32,
-        (axis, sign, slope): (usize, i64, i32),
+        (axis, is_end, slope): (usize, bool, i32),
     ) -> bool {
-        let outside = ((i64::from(across) << self.scale()) - wide(self.divisor(w), slope)) * sign;
+        let outside = (i64::from(across) << self.scale()) - wide(self.divisor(w), slope);
+        let outside = if is_end { outside } else { -outside };
         to_clip.reaches(outside, radius, (axis, self.scale(), if self.flat() != 0 { 0 } else { slope }))
     }
 
