@@ -214,7 +214,7 @@ impl TriangleSetup {
         // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
         // two pixels, since the value stays within 32 bits.
         let sum = wide(cy - ay, b) - wide(by - ay, c);
-        let magnitude = sum.unsigned_abs();
+        let magnitude = sum.abs();
         let excess = 31 - normalise((magnitude >> 30) as u32 | 1).1;
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
         let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
