@@ -13,7 +13,7 @@ use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{IS_ARMV6M, mul_high, normalised, wide};
-use crate::raster::{Attribute, Place};
+use crate::raster::{Attribute, Place, TriangleSetup};
 use core::hint::black_box;
 
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
@@ -90,11 +90,8 @@ impl Perspective<'_> {
         let Some(resolve) = self.units.in_sliver else {
             return;
         };
-        let setup = self.setup;
-        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count()) {
+        for (setup, attribute, line) in self.each() {
             *line = pixel(attribute, resolve(setup, attribute, x, y));
-            // Not unrolled.
-            black_box(());
         }
     }
 
@@ -132,12 +129,22 @@ impl Perspective<'_> {
     /// One pixel, which has weights in a sliver.
     #[inline(never)]
     fn set_pixel(&mut self, place: &Place, weights: Option<&[u32; 2]>) {
-        for (attribute, line) in
-            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count())
-        {
+        for (_, attribute, line) in self.each() {
             *line = pixel(attribute, at(attribute, place, weights));
-            black_box(());
         }
+    }
+
+    /// All attributes that are taken, and their lines. As slices of a length that is hidden, so that loops are not unrolled.
+    #[inline(always)]
+    fn each(&mut self) -> impl Iterator<Item = (&TriangleSetup, &Attribute, &mut Linear)> {
+        let setup = self.setup;
+        let (attributes, lines): (&[Attribute], &mut [Linear]) =
+            (black_box(&setup.attributes), black_box(&mut self.curve.lines));
+        attributes
+            .iter()
+            .zip(lines)
+            .take(self.units.count())
+            .map(move |(attribute, line)| (setup, attribute, line))
     }
 
     /// The lines of a part. Of each attribute, and what its line holds, `of` says how much more than the least it is at the near end; and
@@ -189,8 +196,7 @@ impl Perspective<'_> {
     #[cold]
     #[inline(never)]
     fn set_ends(&mut self, place: &Place, weights: Option<&[u32; 2]>, is_near: bool) {
-        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
-        for (attribute, line) in all.take(self.units.count()) {
+        for (_, attribute, line) in self.each() {
             let above = at(attribute, place, weights);
             if is_near {
                 line.at = above as u32;
