@@ -62,8 +62,7 @@ struct Polygon<'a> {
     /// x and y as [`COARSER`] says, from the screen's upper left corner; w in clip units with [`FINE`] bits more.
     at: [At; MOST_CORNERS],
     count: usize,
-    /// w of the near and of the far plane, in the same unit. (Not as `i64`: the routine that clears what they align to 8 bytes would
-    /// be linked for this alone.)
+    /// w of the near and of the far plane, in the same unit. (An `i64` is aligned to 8 bytes, and to clear these takes another routine.)
     planes: [Split; 2],
 }
 
