@@ -84,11 +84,9 @@ impl Direction {
             return None;
         }
         let exponent = 32 - zeros_of(magnitude) as i32 - 15;
-        let vector = if exponent >= 0 {
-            vector.map(|component| component >> exponent)
-        } else {
-            vector.map(|component| component << -exponent)
-        };
+        // One of them is 0.
+        let (up, down) = ((-exponent).max(0), exponent.max(0));
+        let vector = vector.map(|component| component << up >> down);
         let squares = vector.iter().map(|component| (component * component) as u32).sum();
         Some(Self { vector, exponent, squares })
     }

@@ -130,8 +130,12 @@ impl<'p> Stretch<'p> {
         let all = magnitude(array::from_fn(|i| magnitude(cofactors[i]) as i32));
         // Cofactors are shortened alike, to 14 bits for the largest; the vector has 15: three products are below 3·2²⁹.
         let excess = 18 - zeros_of(all) as i32;
-        let shortened = |cofactor: i32| if excess > 0 { cofactor >> excess } else { cofactor << -excess };
-        let turned = cofactors.map(|row| (0..3).map(|i| shortened(row[i]) * vector[i]).sum::<i32>());
-        Normal::along(if self.pose.is_mirrored() { turned.map(|at| -at) } else { turned })
+        // Without a choice, of which there would be copies.
+        let (up, down) = ((-excess).max(0), excess.max(0));
+        let sign = -i32::from(self.pose.is_mirrored());
+        Normal::along(cofactors.map(|row| {
+            let sum = (0..3).map(|i| (row[i] << up >> down) * vector[i]).sum::<i32>();
+            (sum ^ sign) - sign
+        }))
     }
 }
