@@ -94,10 +94,7 @@ impl<'a> Perspective<'a> {
         }
         let mut fits_table = units.form == Form::Modular && !setup.is_level && !setup.is_extreme;
         if units.form == Form::Modular {
-            units.scale(&setup.attributes);
-            for (i, attribute) in setup.attributes.iter().enumerate().take(units.count()) {
-                fits_table &= attribute.horizon().1 == 0 && units.up(i) <= ONE_LOG2;
-            }
+            fits_table &= units.scale(&setup.attributes, ONE_LOG2);
         }
         if fits_table {
             Self::near_horizon
