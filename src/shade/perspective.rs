@@ -249,7 +249,8 @@ impl<'a> Perspective<'a> {
         let (attributes, lines): (&[Attribute], &mut [Linear]) =
             (black_box(&self.setup.attributes), black_box(&mut self.curve.lines));
         for (i, (attribute, line)) in attributes.iter().zip(lines).enumerate().take(self.units.count()) {
-            level_further(attribute, place, q_step, steps, (i == 1).then(|| self.setup.inset(1)), line);
+            let inset = (black_box(i) == 1).then(|| self.setup.inset(1));
+            level_further(attribute, place, q_step, steps, inset, line);
         }
     }
 
@@ -307,10 +308,11 @@ impl<'a> Perspective<'a> {
         if (setup.is_held || setup.is_bent) && steps > i32::from(setup.longest) {
             return Way::None;
         }
-        for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count()) {
-            let (at, slope) = setup.along(i, [x, y], steps);
+        // A slice of a length that is hidden, so that the loop is not unrolled.
+        let lines: &mut [Linear] = black_box(&mut self.curve.lines);
+        for (i, line) in lines.iter_mut().enumerate().take(self.units.count()) {
+            let (at, slope) = setup.along(black_box(i), [x, y], steps);
             *line = Linear { at: at as u32, slope };
-            black_box(());
         }
         Way::Straight
     }
