@@ -196,7 +196,8 @@ impl Perspective<'_> {
     #[cold]
     #[inline(never)]
     fn set_ends(&mut self, place: &Place, weights: Option<&[u32; 2]>, is_near: bool) {
-        for (_, attribute, line) in self.each() {
+        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
+        for (attribute, line) in all.take(self.units.count()) {
             let above = at(attribute, place, weights);
             if is_near {
                 line.at = above as u32;
