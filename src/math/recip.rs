@@ -146,7 +146,8 @@ pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
             (m, down) = (m << 1, down - 1);
         }
     } else {
-        (m, down) = (m << m.leading_zeros(), down - m.leading_zeros());
+        let (divisor, zeros) = (divisor as u32, divisor.leading_zeros());
+        (m, down) = (divisor << zeros, 31 - zeros);
     }
     let y = u32::from(TABLE[usize::from((m >> 23) as u8) * 2]);
     // As in `looked_up`: δ with 32 fraction bits, at the beginning of the interval. The lowest 8 are 0.
