@@ -116,6 +116,15 @@ pub(crate) const fn mul_round<const S: u32>(a: i32, b: i32) -> i32 {
     ((wide_inlined(a, b) + (1 << (S - 1))) >> S) as i32
 }
 
+/// `a · b`, exactly, of numbers without a sign: by [`wide`], so that on Armv6-M the compiler's routine is not linked as well.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn wide_unsigned(a: u32, b: u32) -> u64 {
+    // What has its upper bit set is 2³² too small there.
+    let more = (if a >> 31 != 0 { b } else { 0 }).wrapping_add(if b >> 31 != 0 { a } else { 0 });
+    (wide(a as i32, b as i32) as u64).wrapping_add((more as u64) << 32)
+}
+
 /// `a · b / 2³⁰`, rounded down, for an `a` within ±2⁵⁹ if the result is.
 ///
 /// Not inlined on Armv6-M: of three wide multiplies there is one copy.
@@ -191,11 +200,29 @@ const fn normalised_stepwise(mut value: u32) -> (u32, u32) {
     (value, zeros)
 }
 
-/// The leading zeros of a number of 64 bits. On Armv6-M, which has no instruction for that, there is one copy.
+/// The leading zeros of a number, 32 of 0. On Armv6-M, which has no instruction for that, by what [`normalise`] has: so the compiler's
+/// routine is not linked as well.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) const fn zeros_of(value: u32) -> u32 {
+    if !IS_ARMV6M {
+        value.leading_zeros()
+    } else if value == 0 {
+        32
+    } else {
+        normalise(value).1
+    }
+}
+
+/// Likewise of a number of 64 bits.
 #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 pub(crate) const fn leading_zeros(value: u64) -> u32 {
-    value.leading_zeros()
+    if !IS_ARMV6M {
+        return value.leading_zeros();
+    }
+    let upper = zeros_of((value >> 32) as u32);
+    if upper < 32 { upper } else { 32 + zeros_of(value as u32) }
 }
 
 /// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.

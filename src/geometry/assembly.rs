@@ -281,9 +281,9 @@ impl Assembler<'_> {
         while cache.piece > 0 {
             let number = cache.piece - 1;
             cache.set_piece(number.into());
-            if piece(cache.polygon(), number.into())
-                .is_some_and(|corners| Oriented::new(corners, self.cull).is_some())
-            {
+            if self.piece(cache).is_some() {
+                // It is still to come: that was to see whether it is culled.
+                cache.has_piece = true;
                 return;
             }
             stats.count(|stats| &mut stats.culled);

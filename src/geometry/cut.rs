@@ -40,7 +40,7 @@ use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip};
-use crate::num::{I12F4, I16F16, U8F8, mul_long, wide};
+use crate::num::{I12F4, I16F16, U8F8, mul_long, wide, zeros_of};
 use crate::scene::Vertex;
 use core::mem;
 
@@ -64,8 +64,24 @@ struct Polygon<'a> {
     lower: [[u32; 3]; MOST_CORNERS],
     upper: &'a mut Upper,
     count: usize,
-    /// w of the near and of the far plane, in the same unit.
-    planes: [i64; 2],
+    /// w of the near and of the far plane, in the same unit. (An `i64` is aligned to 8 bytes, and to clear these takes another routine.)
+    planes: [Split; 2],
+}
+
+/// A number of 64 bits, as lower and upper half.
+#[derive(Clone, Copy)]
+struct Split([u32; 2]);
+
+impl Split {
+    fn new(value: i64) -> Self {
+        Self([value as u32, (value >> 32) as u32])
+    }
+
+    #[inline(always)]
+    fn value(self) -> i64 {
+        let Self([lower, upper]) = self;
+        (u64::from(upper) << 32 | u64::from(lower)) as i64
+    }
 }
 
 /// The memory that clipping takes besides that of the vertices and its own stack. A mesh has it while none of its triangles is drawn.
@@ -113,26 +129,37 @@ impl Polygon<'_> {
         }
     }
 
-    /// Reverses the vertices from `first` to before `end`. (`reverse` takes 600 bytes, unrolled.)
+    /// Reverses the vertices from `first` to before `end`. (`reverse` takes 600 bytes, unrolled.) They are swapped number by number: as
+    /// a whole they would be byte by byte.
     #[inline(never)]
     fn reverse(&mut self, mut first: usize, mut end: usize) {
         while first + 1 < end {
             end -= 1;
-            swap(self.vertices, first, end);
-            swap(&mut self.lower, first, end);
-            swap(self.upper, first, end);
+            if let Some((a, b)) = two(self.vertices, first, end) {
+                mem::swap(&mut a.x, &mut b.x);
+                mem::swap(&mut a.y, &mut b.y);
+                mem::swap(&mut a.q, &mut b.q);
+                mem::swap(&mut a.u, &mut b.u);
+                mem::swap(&mut a.v, &mut b.v);
+                a.color.iter_mut().zip(&mut b.color).for_each(|(a, b)| mem::swap(a, b));
+            }
+            if let Some((a, b)) = two(&mut self.lower, first, end) {
+                a.iter_mut().zip(b).for_each(|(a, b)| mem::swap(a, b));
+            }
+            if let Some((a, b)) = two(self.upper, first, end) {
+                a.iter_mut().zip(b).for_each(|(a, b)| mem::swap(a, b));
+            }
             first += 1;
         }
     }
 }
 
-/// Swaps two elements, `first` < `last`. (The library's `swap` moves them by a routine of 1300 bytes, three times.)
+/// Two elements, `first` < `last`.
 #[inline(always)]
-fn swap<T>(all: &mut [T], first: usize, last: usize) {
-    if let Some((before, [last, ..])) = all.split_at_mut_checked(last)
-        && let Some(first) = before.get_mut(first)
-    {
-        mem::swap(first, last);
+fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> {
+    match all.split_at_mut_checked(last)? {
+        (before, [last, ..]) => Some((before.get_mut(first)?, last)),
+        _ => None,
     }
 }
 
@@ -148,7 +175,7 @@ impl Clip {
         to: &mut [ScreenVertex; MOST_CORNERS],
         upper: &mut Upper,
     ) -> (usize, bool) {
-        let planes = self.planes.map(|plane| Self::distance_of(to_clip, plane));
+        let planes = self.planes.map(|plane| Split::new(Self::distance_of(to_clip, plane)));
         let mut polygon = Polygon { vertices: to, lower: [[0; 3]; MOST_CORNERS], upper, count: 3, planes };
         let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
@@ -242,7 +269,7 @@ impl Clip {
         let is_flat = self.flat() != 0;
         let [x, y, w] = [0, 1, 2].map(|axis| (polygon.at(i, axis) >> 32) as i32);
         let all = (x ^ x >> 31) | (y ^ y >> 31) | if is_flat { 0 } else { w };
-        let dropped = if all == 0 { 2 } else { 34 - all.leading_zeros() as i32 };
+        let dropped = if all == 0 { 2 } else { 34 - zeros_of(all as u32) as i32 };
         let [x, y] = [0, 1].map(|axis| polygon.short(i, axis, dropped));
         // Rounded up, so that it is not before the near plane and q not above 1.
         let w = polygon.short(i, 2, if is_flat { FINE } else { dropped }) + 1;
@@ -269,8 +296,8 @@ impl Clip {
         let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
         let at = if side & 1 == 0 { at } else { -at };
         match side {
-            0 => at - polygon.planes[0],
-            1 => at + polygon.planes[1],
+            0 => at - polygon.planes[0].value(),
+            1 => at + polygon.planes[1].value(),
             _ => self.border_of(polygon, i) + at,
         }
     }
@@ -289,7 +316,7 @@ impl Clip {
     fn look(&self, polygon: &mut Polygon<'_>, i: usize) {
         let [x, y, w] = [0, 1, 2].map(|axis| polygon.at(i, axis));
         let border = self.border_of(polygon, i);
-        let [near, far] = polygon.planes;
+        let [near, far] = polygon.planes.map(Split::value);
         let mut outside = i16::from(w < near) | i16::from(w > far) << 1;
         for (at, bit) in [(x, 2), (y, 4)] {
             // Behind the eye the border is negative, and both may be true.
@@ -344,7 +371,7 @@ impl Clip {
             polygon.mix(axis, corners, &t);
         }
         match polygon.planes.get(side) {
-            Some(&w) => polygon.set(to, 2, w),
+            Some(w) => polygon.set(to, 2, w.value()),
             None => polygon.mix(2, corners, &t),
         }
         let vertices = &mut *polygon.vertices;

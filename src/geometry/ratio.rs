@@ -5,7 +5,7 @@
 //! - Assumes: nothing.
 
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_long, wide};
+use crate::num::{leading_zeros, mul_long, wide};
 
 /// A ratio of 0 … 1.
 pub(super) struct Ratio {
@@ -24,7 +24,7 @@ impl Ratio {
         if whole == 0 {
             return Self { upper: 0, lower: 0 };
         }
-        let shift = whole.leading_zeros() - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
+        let shift = leading_zeros(whole as u64) - 16; // whole becomes 2⁴⁷ … 2⁴⁸ − 1
         let (before, whole) = (before << shift, whole << shift);
         // From its upper 32 bits: 1/whole = mantissa · 2⁻⁷⁸. So before/whole in 2⁻³⁰ is before · mantissa / 2⁴⁸.
         let mantissa = Reciprocal::precise_normalised((whole >> 16) as u32, 1).mantissa;

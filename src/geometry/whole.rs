@@ -29,7 +29,7 @@ use super::screen::ScreenVertex;
 use super::transform::ToClip;
 use crate::math::Pose;
 use crate::math::recip::looked_up;
-use crate::num::{I12F4, U1F31, mul_20, normalised};
+use crate::num::{I12F4, U1F31, mul_20, normalised, zeros_of};
 use crate::scene::{Bounds, Projection, Vertex};
 
 /// Places the vertices of one mesh.
@@ -91,8 +91,8 @@ impl Placing {
             [0, 1].map(|axis| center[axis].saturating_abs().saturating_add(to_clip.reach(axis, radius)));
         let across = across[0].max(across[1]);
         // Positive, so that one bit is left for the sign of x and y.
-        let bits = (across.leading_zeros() - 1).min(MOST_BITS);
-        let bits_of_w = farthest.leading_zeros().min(MOST_BITS);
+        let bits = (zeros_of(across as u32) - 1).min(MOST_BITS);
+        let bits_of_w = zeros_of(farthest as u32).min(MOST_BITS);
 
         // Of the nearest vertex.
         let (w, zeros) = normalised((nearest as u32) << bits_of_w);

@@ -5,28 +5,33 @@
 //!   quotient and remainder (`div_rem`), or a quotient of small integers (`quotient_of_10_bits`).
 //! - Assumes: what each function says of its divisor. Where 0 is allowed it counts as 1.
 //!
-//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1. The 9 bits after its leading one select an interval
-//! of the table, and the next 15 interpolate in it, linearly: by the chord of 1/x, x = m/2³¹. The chord is too high by up to
-//! 2⁻²⁰/x² of the value (f″h²/8 with h = 1/512). So the entries are lowered by half of that, and the error stays below 2⁻²⁰
-//! on both sides. The first entry is not lowered, so that powers of two stay exact. The scheme is that of the Nintendo 64's
-//! rasterizer, which has 64 intervals.
+//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1, which is x = m/2³¹ in the unit of 1. The 9 bits after its
+//! leading one select one of 512 intervals. The table has y, the reciprocal of the interval's middle, and one Newton–Raphson step
+//! makes of it the reciprocal of x: with δ = x·y − 1, what is too much,
 //!
-//! One Newton–Raphson step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
+//! ```text
+//! 1/x ≈ y · (1 − δ)      too low by δ² of itself, as (1 + δ) · (1 − δ) = 1 − δ²
+//! ```
+//!
+//! δ is within 2⁻¹⁰/x, half an interval, and 2⁻¹⁷ from y's rounding: so δ² is below 2⁻²⁰. Half of that, 2⁻²¹, is added everywhere.
+//! A table of so many reciprocals of 16 bits takes half the flash of one in which lines are drawn from entry to entry, and no
+//! longer to look up: δ is the low bits of a product, since all above them are those of 1.
+//!
+//! One more such step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::{mul_high, normalise, normalised, wide_inlined};
+use crate::num::{IS_ARMV6M, mul_high, normalise, normalised, wide_inlined};
 
 const INTERVALS: usize = 512;
 
-/// 2³¹/x for x = 1 + i/512, rounded, less 2¹⁰/x³, which is half of the chord's error.
-static TABLE: [u32; INTERVALS + 1] = table();
+/// 2¹⁶/x for x = 1 + (i + ½)/512, rounded.
+static TABLE: [u16; INTERVALS] = table();
 
-const fn table() -> [u32; INTERVALS + 1] {
-    let mut table = [0; INTERVALS + 1];
+const fn table() -> [u16; INTERVALS] {
+    let mut table = [0; INTERVALS];
     let mut i = 0;
-    while i <= INTERVALS {
-        let n = (INTERVALS + i) as u64; // x = n/512
-        let half_chord = if i == 0 { 0 } else { (1 << 37) / (n * n * n) };
-        table[i] = (((1 << 40) + n / 2) / n - half_chord) as u32;
+    while i < INTERVALS {
+        let n = (INTERVALS + i) as u32 * 2 + 1; // x = n/1024
+        table[i] = (((1 << 26) + n / 2) / n) as u16;
         i += 1;
     }
     table
@@ -35,7 +40,7 @@ const fn table() -> [u32; INTERVALS + 1] {
 /// 1/d as a mantissa and the leading zeros of d: 1/d = `mantissa` · 2^(`zeros` − 62).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reciprocal {
-    /// 2³⁰ … 2³¹ − 1; in a [`coarse`](Self::coarse) one it may be up to 94 below 2³⁰.
+    /// 2³⁰ … 2³¹ − 1.
     pub(crate) mantissa: i32,
     /// The leading zeros of the divisor, 0 … 31.
     pub(crate) zeros: u32,
@@ -52,8 +57,7 @@ impl Reciprocal {
     /// As [`Reciprocal::coarse`], from a normalised divisor `m`, 2³¹ … 2³² − 1, and the leading zeros that it had.
     #[inline]
     pub(crate) fn coarse_normalised(m: u32, zeros: u32) -> Self {
-        // 2³¹, which comes of powers of two, is one too many for an i32: they are off by the last bit here.
-        Self { mantissa: looked_up(m).min(i32::MAX as u32) as i32, zeros }
+        Self { mantissa: looked_up(m) as i32, zeros }
     }
 
     /// A mantissa that is not too large, from the table's: for a step that must not lead beyond its end.
@@ -92,21 +96,15 @@ impl Reciprocal {
     }
 }
 
-/// 2⁶²/m for m = 2³¹ … 2³² − 1: 2³¹ … 2³⁰, or up to 94 less at the end. The relative error is below 2⁻²⁰, and 0 for m = 2³¹.
+/// 2⁶²/m for m = 2³¹ … 2³² − 1: less than 2³¹ and more than 2³⁰. The relative error is below 2⁻²⁰.
 #[inline]
 pub(crate) fn looked_up(m: u32) -> u32 {
-    let i = (m >> 22) as usize & (INTERVALS - 1);
-    let (left, right) = (TABLE[i], TABLE[i + 1]);
-    // 17 bits · 15 bits.
-    let fall = (((left - right) >> 5) * ((m >> 7) & 0x7fff)) >> 10;
-    left - fall
-}
-
-/// As [`looked_up`], but 2³¹ − 1 at most, which fits an `i32`.
-#[inline]
-pub(crate) fn looked_up_signed(m: u32) -> i32 {
-    let inverse = looked_up(m);
-    (inverse - (inverse >> 31)) as i32
+    let y = u32::from(TABLE[(m >> 22) as usize & (INTERVALS - 1)]);
+    // x has 24 fraction bits here, y 16: what is left of the product is δ with 40, within ±1.01 · 2³⁰.
+    let excess = (m >> 7).wrapping_mul(y) as i32;
+    // 2⁻²¹ in units of 2⁻²⁴, of which 1 comes by itself where bits are cut off.
+    let less = ((excess >> 16) - 7) * y as i32;
+    (y << 15).wrapping_add_signed(-(less >> 9))
 }
 
 /// The exact quotient and remainder, from a quotient that is off by at most a few.
@@ -139,13 +137,24 @@ pub(crate) fn short_of(divisor: u32) -> (u32, u32) {
 }
 
 /// `numerator / divisor` with 20 fraction bits, for a numerator within ±512 (10 bits with the sign) and a divisor of 1 … 511.
-/// Each such divisor falls on an entry of the table, so nothing is interpolated. The reciprocal's relative error is below
-/// 2⁻²⁰, and the quotient is rounded to nearest.
+/// The reciprocal is off by at most 2⁻²⁰ of itself, and the quotient is rounded to nearest.
 #[inline]
 pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
-    let (m, zeros) = normalised((divisor as u32) << 23);
-    let reciprocal = (TABLE[(m >> 22) as usize & (INTERVALS - 1)] + (1 << 9)) >> 10;
-    (((numerator * reciprocal as i32) >> ((8 - zeros) & 31)) + 1) >> 1
+    let (mut m, mut down) = ((divisor as u32) << 23, 8);
+    if IS_ARMV6M {
+        while (m as i32) >= 0 {
+            (m, down) = (m << 1, down - 1);
+        }
+    } else {
+        let (divisor, zeros) = (divisor as u32, divisor.leading_zeros());
+        (m, down) = (divisor << zeros, 31 - zeros);
+    }
+    let y = u32::from(TABLE[usize::from((m >> 23) as u8) * 2]);
+    // As in `looked_up`: δ with 32 fraction bits, at the beginning of the interval. The lowest 8 are 0.
+    let excess = (m >> 15).wrapping_mul(y) as i32;
+    let less = if IS_ARMV6M { ((excess >> 8) * y as i32) >> 19 } else { mul_high(excess, y << 5) };
+    let reciprocal = (y << 5) as i32 - less;
+    (((numerator * reciprocal) >> (down & 31)) + 1) >> 1
 }
 
 #[cfg(test)]

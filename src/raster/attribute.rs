@@ -38,7 +38,7 @@ const _: () = assert!(size_of::<Attribute>() == 32);
 pub(crate) struct Place {
     pub(crate) x: i32,
     pub(crate) y: i32,
-    /// 1/q, as [`looked_up_signed`](crate::math::recip::looked_up_signed) has it of q's mantissa, and the leading zeros of q.
+    /// 1/q, as [`looked_up`](crate::math::recip::looked_up) has it of q's mantissa, and the leading zeros of q.
     pub(crate) reciprocal: i32,
     pub(crate) zeros: u32,
 }

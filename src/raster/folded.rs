@@ -12,6 +12,7 @@
 use super::rows::centers_left;
 use crate::frame::{Window, first_center};
 use crate::geometry::{MOST_CORNERS, ScreenVertex, piece};
+use core::hint::black_box;
 use core::ops::Range;
 
 /// The rows of a window in which a folded polygon has pixel centres.
@@ -123,7 +124,8 @@ impl Runs {
 /// one that goes down. The triangle covers the centres between these two columns. It runs clockwise if the first is less.
 #[inline(never)]
 fn set_sides(sides: &mut [[i32; 2]], polygon: &[ScreenVertex], row: i32) {
-    for (number, sides) in sides.iter_mut().enumerate() {
+    // A slice of a length that is hidden, so that the loop is not unrolled.
+    for (number, sides) in black_box(sides).iter_mut().enumerate() {
         if let Some(corners) = piece(polygon, number) {
             *sides = [side(row, corners, true), side(row, corners, false)];
         }

@@ -13,6 +13,7 @@ use super::scaling::Scaling;
 use super::straight::Straight;
 use super::triangle::TriangleSetup;
 use crate::geometry::{Inputs, ScreenVertex};
+use crate::num::zeros_of;
 use core::fmt;
 
 /// The functions that set up what a shader reads.
@@ -150,7 +151,7 @@ impl Needs {
             let size =
                 (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
             // Differences stay below 2²⁹.
-            size.leading_zeros().saturating_sub(3).min(self.scale.into()) as u8
+            zeros_of(size).saturating_sub(3).min(self.scale.into()) as u8
         });
         self.set_scaled(finer, scaling);
     }

@@ -4,7 +4,7 @@ use super::attribute::Attribute;
 use super::plane::Plane;
 use crate::geometry::{ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
-use crate::num::{mul_round, normalise, shift_round, wide, wide_inlined};
+use crate::num::{leading_zeros, mul_round, normalise, shift_round, wide, wide_inlined};
 
 /// The longest row of a straight triangle, in steps.
 pub(crate) const STRAIGHT: u8 = 31;
@@ -226,7 +226,7 @@ impl TriangleSetup {
         // 16 · (b·(y₂ − y₀) − c·(y₁ − y₀)) / area, with 31 bits of the sum. It may be too large for an i32: then no span has
         // two pixels, since the value stays within 32 bits.
         let sum = wide(cy - ay, b) - wide(by - ay, c);
-        let magnitude = sum.unsigned_abs();
+        let magnitude = sum.abs();
         let excess = 31 - normalise((magnitude >> 30) as u32 | 1).1;
         let product = wide((magnitude >> excess) as i32, self.area.mantissa);
         let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
@@ -248,7 +248,7 @@ impl TriangleSetup {
         let (b, c) = (wide(b, q(plane.steps[0])), wide(c, q(plane.steps[1])));
         let sum = (wide(a, q(0)) + b + c).max(1);
         // Their upper 31 bits.
-        let excess = 33 - sum.leading_zeros() as i32;
+        let excess = 33 - leading_zeros(sum as u64) as i32;
         let upper = |product: i64| (if excess >= 0 { product >> excess } else { product << -excess }) as i32;
         let reciprocal = Reciprocal::precise(upper(sum) as u32);
         let weights = [b, c].map(|product| {

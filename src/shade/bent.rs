@@ -11,9 +11,9 @@ use super::inverses::{ONE_LOG2, inverse};
 use super::packed::shifted;
 use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
-use crate::math::recip::{Reciprocal, looked_up_signed};
+use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{IS_ARMV6M, mul_high, mul_high_signed, normalised, wide};
-use crate::raster::{Attribute, Place};
+use crate::raster::{Attribute, Place, TriangleSetup};
 use core::hint::black_box;
 
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
@@ -80,11 +80,8 @@ impl Perspective<'_> {
         let Some(resolve) = self.units.in_sliver else {
             return;
         };
-        let setup = self.setup;
-        for (attribute, line) in setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count()) {
+        for (setup, attribute, line) in self.each() {
             *line = pixel(attribute, resolve(setup, attribute, x, y));
-            // Not unrolled.
-            black_box(());
         }
     }
 
@@ -93,7 +90,7 @@ impl Perspective<'_> {
     fn place_in_sliver(&mut self, x: i32, place: &mut Place, weights: &mut [u32; 2]) {
         *weights = self.setup.weights(x, place.y);
         let (m, zeros) = self.mantissa_of(self.setup.q().weighted(weights));
-        *place = Place { x, y: place.y, reciprocal: looked_up_signed(m), zeros };
+        *place = Place { x, y: place.y, reciprocal: looked_up(m) as i32, zeros };
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
@@ -122,12 +119,22 @@ impl Perspective<'_> {
     /// One pixel, which has weights in a sliver.
     #[inline(never)]
     fn set_pixel(&mut self, place: &Place, weights: Option<&[u32; 2]>) {
-        for (attribute, line) in
-            self.setup.attributes.iter().zip(&mut self.curve.lines).take(self.units.count())
-        {
+        for (_, attribute, line) in self.each() {
             *line = pixel(attribute, at(attribute, place, weights));
-            black_box(());
         }
+    }
+
+    /// All attributes that are taken, and their lines. As slices of a length that is hidden, so that loops are not unrolled.
+    #[inline(always)]
+    fn each(&mut self) -> impl Iterator<Item = (&TriangleSetup, &Attribute, &mut Linear)> {
+        let setup = self.setup;
+        let (attributes, lines): (&[Attribute], &mut [Linear]) =
+            (black_box(&setup.attributes), black_box(&mut self.curve.lines));
+        attributes
+            .iter()
+            .zip(lines)
+            .take(self.units.count())
+            .map(move |(attribute, line)| (setup, attribute, line))
     }
 
     /// The lines of a part. Of each attribute, and what its line holds, `of` says how much more than the least it is at the near end; and

@@ -8,7 +8,7 @@ use super::channels::{Channels, lit};
 use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::Light;
-use super::packed::{bent, draw_texels, integer_bits, place_of, step_of};
+use super::packed::{bent, draw_texels, draw_texels_alone, integer_bits, place_of, step_of};
 use super::texels::Texels;
 use super::units::Units;
 use crate::frame::PixelFormat;
@@ -98,9 +98,7 @@ macro_rules! fill_row_of_lit_texels {
             ) {
                 let (texture, is_packed) = (self.texture, self.is_packed);
                 if IS_ARMV6M && F::KEEPS {
-                    draw_texels(texture, is_packed, pixels, (at, ()), (step, ()), |texel, ()| {
-                        F::rgb565(texel)
-                    });
+                    draw_texels_alone::<F>(texture, is_packed, pixels, at, step);
                     return light_row::<$m, F, C>(pixels, light, light_step);
                 }
                 draw_texels(

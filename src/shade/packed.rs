@@ -2,6 +2,7 @@
 
 use super::curve::Linear;
 use super::fill::{Steps, draw_row};
+use crate::frame::PixelFormat;
 use crate::num::IS_ARMV6M;
 use crate::raster::{ATTRIBUTES, TriangleSetup};
 use crate::scene::Texture;
@@ -113,7 +114,8 @@ fn packed_bent(texture: &Texture<'_>, setup: &TriangleSetup, place: [i32; 2], st
 /// Draws a row of a small triangle with texels, u and v as `place_of` and `step_of` have them. `other` is whatever else a word is made of,
 /// and steps as well.
 ///
-/// For 4096 and 1024 texels, of square textures but on Armv6-M, the compiler knows that no index lies outside: nothing is checked.
+/// For 4096 texels, of a square texture but on Armv6-M, the compiler knows that no index lies outside: nothing is checked. On Armv6-M all
+/// other textures share a function, which takes a call more for a row, so that their loops are not in that of each surface.
 #[inline(always)]
 pub(crate) fn draw_texels<W, P: Steps>(
     texture: &Texture<'_>,
@@ -123,27 +125,66 @@ pub(crate) fn draw_texels<W, P: Steps>(
     (step, other_step): ([i32; 2], P),
     word: impl Fn(u16, P) -> W,
 ) {
+    if !IS_ARMV6M && !is_packed {
+        return draw_unpacked(texture, pixels, (at, other), (step, other_step), word);
+    }
+    if is_packed
+        && let Ok(texels) = <&[u16; 0x1000]>::try_from(texture.texels())
+        && (IS_ARMV6M || texture.log2()[0] == 6)
+    {
+        let (at, step) = ((at[0] as u32, other), (step[0] as u32, other_step));
+        let texel = squared::<6, _>(texture, texels);
+        return draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
+    }
+    draw_others(texture, is_packed, pixels, &(at, other), &(step, other_step), word);
+}
+
+/// The texels alone: one copy, whatever comes after them.
+#[inline(always)]
+pub(crate) fn draw_texels_alone<F: PixelFormat>(
+    texture: &Texture<'_>,
+    is_packed: bool,
+    pixels: &mut [F::Word],
+    at: [i32; 2],
+    step: [i32; 2],
+) {
+    draw_texels(texture, is_packed, pixels, (at, ()), (step, ()), |texel, ()| F::rgb565(texel));
+}
+
+/// As [`draw_texels`], of textures of any size. Out of line on Armv6-M, where texels are drawn before anything `other`: one copy does.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
+fn draw_others<W, P: Steps>(
+    texture: &Texture<'_>,
+    is_packed: bool,
+    pixels: &mut [W],
+    &(at, other): &([i32; 2], P),
+    &(step, other_step): &([i32; 2], P),
+    word: impl Fn(u16, P) -> W,
+) {
     if !is_packed {
-        return draw_row(pixels, (at, other), (step, other_step), |([u, v], other)| {
-            word(texture.fetch_repeat(u >> 16, v >> 16), other)
-        });
+        return draw_unpacked(texture, pixels, (at, other), (step, other_step), word);
     }
     let (at, step) = ((at[0] as u32, other), (step[0] as u32, other_step));
     let texels = texture.texels();
-    let is_square = |log2: u32| IS_ARMV6M || texture.log2()[0] == log2;
-    if let Ok(texels) = <&[u16; 0x1000]>::try_from(texels)
-        && is_square(6)
-    {
-        let texel = squared::<6, _>(texture, texels);
-        draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
-    } else if let Ok(texels) = <&[u16; 0x400]>::try_from(texels)
-        && is_square(5)
+    if let Ok(texels) = <&[u16; 0x400]>::try_from(texels)
+        && (IS_ARMV6M || texture.log2()[0] == 5)
     {
         let texel = squared::<5, _>(texture, texels);
-        draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
-    } else {
-        draw_row(pixels, at, step, |(at, other)| word(texture.fetch_packed(at), other));
+        return draw_row(pixels, at, step, |(at, other)| word(texel(at), other));
     }
+    draw_row(pixels, at, step, |(at, other)| word(texture.fetch_packed(at), other));
+}
+
+#[inline(always)]
+fn draw_unpacked<W, P: Steps>(
+    texture: &Texture<'_>,
+    pixels: &mut [W],
+    at: ([i32; 2], P),
+    step: ([i32; 2], P),
+    word: impl Fn(u16, P) -> W,
+) {
+    draw_row(pixels, at, step, |([u, v], other)| word(texture.fetch_repeat(u >> 16, v >> 16), other));
 }
 
 /// As [`sized`], of a square texture of sides of 2^`A` texels: so that mask and multiplier are constants. On a Cortex-M4 these are part of

@@ -42,7 +42,7 @@ use super::fill::Fill;
 use super::inverses::ONE_LOG2;
 use super::level::{level, level_further};
 use super::units::{Form, Units};
-use crate::math::recip::looked_up_signed;
+use crate::math::recip::looked_up;
 use crate::num::{IS_ARMV6M, mul_high_signed, normalise};
 use crate::raster::{ATTRIBUTES, Attribute, Place, TriangleSetup, towards_zero};
 use core::hint::black_box;
@@ -96,10 +96,7 @@ impl<'a> Perspective<'a> {
         }
         let mut fits_table = units.form == Form::Modular && !setup.is_level && !setup.is_extreme;
         if units.form == Form::Modular {
-            units.scale(&setup.attributes);
-            for (i, attribute) in setup.attributes.iter().enumerate().take(units.count()) {
-                fits_table &= attribute.horizon().1 == 0 && units.up(i) <= ONE_LOG2;
-            }
+            fits_table &= units.scale(&setup.attributes, ONE_LOG2);
         }
         if fits_table {
             Self::near_horizon
@@ -122,7 +119,7 @@ impl<'a> Perspective<'a> {
     #[inline(always)]
     pub(super) fn place(&mut self, x: i32, y: i32) -> Place {
         let (m, zeros) = self.q_at(x, y);
-        Place { x, y, reciprocal: looked_up_signed(m), zeros }
+        Place { x, y, reciprocal: looked_up(m) as i32, zeros }
     }
 
     /// The near end of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
@@ -227,7 +224,7 @@ impl<'a> Perspective<'a> {
         if steps == 1 && self.setup.attributes.iter().take(self.units.count()).any(is_steep) {
             return Way::None;
         }
-        let reciprocal = looked_up_signed(m);
+        let reciprocal = looked_up(m) as i32;
         let (count, place) = (self.units.count(), Place { x, y, reciprocal, zeros });
         if bends {
             self.level_bending(&place, q_step, steps);
@@ -252,7 +249,8 @@ impl<'a> Perspective<'a> {
         let (attributes, lines): (&[Attribute], &mut [Linear]) =
             (black_box(&self.setup.attributes), black_box(&mut self.curve.lines));
         for (i, (attribute, line)) in attributes.iter().zip(lines).enumerate().take(self.units.count()) {
-            level_further(attribute, place, q_step, steps, (i == 1).then(|| self.setup.inset(1)), line);
+            let inset = (black_box(i) == 1).then(|| self.setup.inset(1));
+            level_further(attribute, place, q_step, steps, inset, line);
         }
     }
 
@@ -316,10 +314,11 @@ impl<'a> Perspective<'a> {
         if (setup.is_held || setup.is_bent) && steps > i32::from(setup.longest) {
             return Way::None;
         }
-        for (i, line) in self.curve.lines.iter_mut().enumerate().take(self.units.count()) {
-            let (at, slope) = setup.along(i, [x, y], steps);
+        // A slice of a length that is hidden, so that the loop is not unrolled.
+        let lines: &mut [Linear] = black_box(&mut self.curve.lines);
+        for (i, line) in lines.iter_mut().enumerate().take(self.units.count()) {
+            let (at, slope) = setup.along(black_box(i), [x, y], steps);
             *line = Linear { at: at as u32, slope };
-            black_box(());
         }
         Way::Straight
     }

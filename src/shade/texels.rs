@@ -11,7 +11,7 @@ use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
-use super::packed::{bent, downs, draw_texels, integer_bits, place_of, step_of};
+use super::packed::{bent, downs, draw_texels_alone, integer_bits, place_of, step_of};
 use super::units::Units;
 use crate::frame::PixelFormat;
 use crate::raster::TriangleSetup;
@@ -110,7 +110,7 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
 
     #[inline]
     fn row(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
-        draw_texels(self.texture, self.is_packed, pixels, (at, ()), (step, ()), |texel, ()| F::rgb565(texel));
+        draw_texels_alone::<F>(self.texture, self.is_packed, pixels, at, step);
     }
 }
 

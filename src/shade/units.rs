@@ -5,6 +5,7 @@
 //! - Assumes: nothing.
 
 use crate::raster::{ATTRIBUTES, Attribute, TriangleSetup};
+use core::hint::black_box;
 
 /// How a fill takes attributes that follow perspective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,12 +64,19 @@ impl Units {
         self.count.into()
     }
 
-    /// Makes them those for attributes that come out without their `scale_log2`.
+    /// Makes them those for attributes that come out without their `scale_log2`. Returns whether none of these is shifted left by more
+    /// than `most` then, and the horizon of each is given to the last bit.
     #[inline]
-    pub(crate) fn scale(&mut self, attributes: &[Attribute]) {
-        for (up, attribute) in self.up.iter_mut().zip(attributes).take(self.count.into()) {
+    pub(crate) fn scale(&mut self, attributes: &[Attribute; ATTRIBUTES], most: u32) -> bool {
+        // Slices of a length that is hidden, so that the loop is not unrolled.
+        let (ups, attributes): (&mut [u8], &[Attribute]) = (black_box(&mut self.up), black_box(attributes));
+        let mut fits = true;
+        for (up, attribute) in ups.iter_mut().zip(attributes).take(self.count.into()) {
             *up = (*up + attribute.scale_log2() as u8) & 31;
+            fits &= attribute.horizon().1 == 0 && u32::from(*up) <= most;
+            black_box(());
         }
+        fits
     }
 
     /// Bits to shift attribute `i` left to the unit of the fill.

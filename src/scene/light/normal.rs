@@ -1,6 +1,6 @@
 //! Normals and other directions, scaled so that products with them are short.
 
-use crate::num::{I2F14, I4F12, wide};
+use crate::num::{I2F14, I4F12, leading_zeros, wide, zeros_of};
 use core::array;
 
 /// The direction in which a surface faces, in mesh space, of length 1.0 or, where it faces nowhere, 0.
@@ -83,12 +83,10 @@ impl Direction {
         if magnitude == 0 {
             return None;
         }
-        let exponent = 32 - magnitude.leading_zeros() as i32 - 15;
-        let vector = if exponent >= 0 {
-            vector.map(|component| component >> exponent)
-        } else {
-            vector.map(|component| component << -exponent)
-        };
+        let exponent = 32 - zeros_of(magnitude) as i32 - 15;
+        // One of them is 0.
+        let (up, down) = ((-exponent).max(0), exponent.max(0));
+        let vector = vector.map(|component| component << up >> down);
         let squares = vector.iter().map(|component| (component * component) as u32).sum();
         Some(Self { vector, exponent, squares })
     }
@@ -139,7 +137,7 @@ fn long_cross(p: [i32; 3], q: [i32; 3]) -> [i32; 3] {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         wide(p[j], q[k]) - wide(p[k], q[j])
     });
-    let shift = (64 - magnitude64(cross).leading_zeros()).saturating_sub(30);
+    let shift = (64 - leading_zeros(magnitude64(cross))).saturating_sub(30);
     cross.map(|component| (component >> shift) as i32)
 }
 

@@ -4,7 +4,7 @@ use super::normal::{Direction, Normal, facing, magnitude64};
 use super::stretch::Stretch;
 use crate::math::recip::Reciprocal;
 use crate::math::{Pose, Vec3};
-use crate::num::{I2F14, I4F12, I16F16, wide};
+use crate::num::{I2F14, I4F12, I16F16, leading_zeros, wide, zeros_of};
 use core::{array, num::NonZeroU16};
 
 /// The functions of point lights. A light that is one refers to them: so only programs that make one link them.
@@ -66,7 +66,7 @@ impl LocalPoint {
     fn new(from_origin: [i64; 3], (scale, log2): (u32, i32), range: I16F16, color: [u8; 3]) -> Self {
         let range = range.to_bits().unsigned_abs();
         // Of 29 bits, over the unit: position = numerator · 2^(excess − 27) · 2²² / scale / 2^log2.
-        let excess = 64 - magnitude64(from_origin).leading_zeros() as i32 - 29;
+        let excess = 64 - leading_zeros(magnitude64(from_origin)) as i32 - 29;
         let numerator = from_origin
             .map(|component| (if excess >= 0 { component >> excess } else { component << -excess }) as i32);
         // `precise` takes 31 bits.
@@ -79,10 +79,10 @@ impl LocalPoint {
 
         // scale / range = ratio · 2^(zeros of range − zeros of scale − 36), 2²⁹ … 2³¹ − 1.
         let Reciprocal { mantissa, zeros } = Reciprocal::coarse(range);
-        let scale_zeros = scale.leading_zeros();
+        let scale_zeros = zeros_of(scale);
         let ratio = (wide(((scale << scale_zeros) >> 1) as i32, mantissa) >> 31) as i32;
         let square = (wide(ratio, ratio) >> 31) as u32;
-        let square_zeros = square.leading_zeros();
+        let square_zeros = zeros_of(square);
         // Its first bit is set anyway; the type's unused 0 saves room.
         let inverse = NonZeroU16::MIN | ((square << square_zeros) >> 16) as u16;
         let inverse_exponent = 2 * (zeros as i32 - scale_zeros as i32 + log2) - 25 - square_zeros as i32;

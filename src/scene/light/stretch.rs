@@ -14,7 +14,7 @@
 
 use super::normal::{Direction, Normal, magnitude};
 use crate::math::{Pose, dot};
-use crate::num::{I2F14, I4F12, leading_zeros, wide};
+use crate::num::{I2F14, I4F12, leading_zeros, wide, wide_unsigned, zeros_of};
 use core::array;
 
 /// A pose that does not keep angles.
@@ -34,8 +34,8 @@ impl<'p> Stretch<'p> {
         if pose.keeps_angles() {
             return None;
         }
-        let scales = pose.scale.map(|scale| u64::from(scale.to_bits()));
-        let products: [u64; 3] = array::from_fn(|i| scales[(i + 1) % 3] * scales[(i + 2) % 3]);
+        let scales = pose.scale.map(|scale| scale.to_bits());
+        let products: [u64; 3] = array::from_fn(|i| wide_unsigned(scales[(i + 1) % 3], scales[(i + 2) % 3]));
         let zeros = leading_zeros(products.iter().fold(1, |all, product| all | product));
         let mut stretch = Self { pose, factors: [0; 3], shifts: u16::from(!pose.is_orthonormal()) << 15 };
         for (i, product) in products.into_iter().enumerate() {
@@ -59,7 +59,7 @@ impl<'p> Stretch<'p> {
 
     /// How many bits the largest scale has as U10F22, at least 1.
     fn bits(&self) -> u32 {
-        32 - self.pose.scale.iter().fold(1, |all, scale| all | scale.to_bits()).leading_zeros()
+        32 - zeros_of(self.pose.scale.iter().fold(1, |all, scale| all | scale.to_bits()))
     }
 
     /// Log₂ of the unit of [`Stretch::place`] in units of the world: 4 to 8 times the largest scale. p is at
@@ -99,7 +99,7 @@ impl<'p> Stretch<'p> {
     #[inline(never)]
     pub(super) fn face_normal(&self, across: [i32; 3]) -> Normal {
         // 15 bits of each component, with an exponent of its own: a small one may become the largest.
-        let excess = across.map(|at| 17 - at.unsigned_abs().leading_zeros() as i32);
+        let excess = across.map(|at| 17 - zeros_of(at.unsigned_abs()) as i32);
         let mantissas = array::from_fn(|i| {
             if excess[i] > 0 { across[i] >> excess[i] } else { across[i] << (-excess[i]).min(15) }
         });
@@ -129,9 +129,13 @@ impl<'p> Stretch<'p> {
         let cofactors = self.pose.cofactors();
         let all = magnitude(array::from_fn(|i| magnitude(cofactors[i]) as i32));
         // Cofactors are shortened alike, to 14 bits for the largest; the vector has 15: three products are below 3·2²⁹.
-        let excess = 18 - all.leading_zeros() as i32;
-        let shortened = |cofactor: i32| if excess > 0 { cofactor >> excess } else { cofactor << -excess };
-        let turned = cofactors.map(|row| (0..3).map(|i| shortened(row[i]) * vector[i]).sum::<i32>());
-        Normal::along(if self.pose.is_mirrored() { turned.map(|at| -at) } else { turned })
+        let excess = 18 - zeros_of(all) as i32;
+        // Without a choice, of which there would be copies.
+        let (up, down) = ((-excess).max(0), excess.max(0));
+        let sign = -i32::from(self.pose.is_mirrored());
+        Normal::along(cofactors.map(|row| {
+            let sum = (0..3).map(|i| (row[i] << up >> down) * vector[i]).sum::<i32>();
+            (sum ^ sign) - sign
+        }))
     }
 }
