@@ -85,7 +85,8 @@ impl TriangleSetup {
         self.bends[1][1] = q_min as i32;
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
         let is_perspective = matches!(needs.straight, Straight::Below(_));
-        slopes.sliver |= needs.every_pixel && q_min < 1 << 19 && is_perspective;
+        slopes.sliver |=
+            needs.every_pixel && (q_min < 1 << 19 && is_perspective || slopes.are_coarse(self.area.zeros));
         self.sliver = slopes.sliver;
         if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room

@@ -68,6 +68,12 @@ impl Slopes {
         }
     }
 
+    /// Whether they are too coarse for [`Exact`](crate::Exact): as `sliver` asks, but with the fewer bits of the two for both axes.
+    pub(super) fn are_coarse(&self, area_zeros: u32) -> bool {
+        // As 2 · `shift` < 23 + zeros.
+        2 * self.fraction_bits() + (area_zeros as i32) < 13
+    }
+
     /// The fraction bits of slopes, along the axis where there are fewer.
     pub(super) fn fraction_bits(&self) -> i32 {
         self.fraction_bits[0].min(self.fraction_bits[1]).into()

@@ -275,19 +275,8 @@ impl<'a> Perspective<'a> {
             return self.ask_bent(x, y, steps);
         }
         self.curve.set_w(setup.q_rises, w_step, steps);
-        // On a Cortex-M4 it is faster inlined, by 3 % in long rows.
-        if IS_ARMV6M {
-            self.set_tables_apart(&near);
-        } else {
-            self.set_tables(&near);
-        }
+        self.set_tables(&near);
         Way::Table
-    }
-
-    /// Not inlined: it would be on the stack together with `bent_from`.
-    #[inline(never)]
-    fn set_tables_apart(&mut self, near: &Place) {
-        self.set_tables(near);
     }
 
     /// Sets lines in 1/w.
