@@ -9,7 +9,7 @@ pub(crate) mod perspective;
 pub(crate) mod scenes;
 pub(crate) mod view;
 
-use std::fmt::Debug;
+use std::fmt::{Debug, Formatter};
 use std::marker::PhantomData;
 
 use fixel::embedded_graphics::pixelcolor::Rgb565;
@@ -18,8 +18,8 @@ use fixel::fixed::types::{I12F4, I16F16, U1F31, U8F8};
 use fixel::{
     Band, Cull, DepthFormat, Inputs, PixelFormat, Quality, RangeError, ScreenVertex, Shader, Surface, Varying,
 };
-use proptest::strategy::Strategy;
-use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestRng, TestRunner};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, Reason, RngAlgorithm, TestCaseError, TestRng, TestRunner};
 
 use crate::reference::{ATTRIBUTES, Corner, Facing, Triangle};
 
@@ -41,7 +41,12 @@ pub(crate) fn for_all<S: Strategy>(
 ) where
     S::Value: Debug,
 {
-    let cases = cases(usual);
+    let check = &check;
+    let any = AnyStrategy(&|runner| Ok(Box::new(Checked { part: strategy.new_tree(runner)?, check })));
+    run(name, cases(usual), &any);
+}
+
+fn run(name: &str, cases: u32, strategy: &AnyStrategy<'_>) {
     let config = Config { cases, failure_persistence: None, max_shrink_iters: 20_000, ..Config::default() };
     let number =
         std::env::var("FIXEL_SEED").map_or(0, |text| text.parse::<u64>().expect("FIXEL_SEED is a number"));
@@ -52,10 +57,80 @@ pub(crate) fn for_all<S: Strategy>(
     seed[..8].copy_from_slice(&number.to_le_bytes());
     seed[8..16].copy_from_slice(&named.to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-    if let Err(failure) = TestRunner::new_with_rng(config, rng).run(&strategy, check) {
+    if let Err(failure) = TestRunner::new_with_rng(config, rng).run(strategy, |case| case.0.check()) {
         panic!("{name}: {failure}");
     }
     println!("{name}: {cases} cases");
+}
+
+/// A strategy of any type, with the check of its values: proptest's runner is compiled once for all tests, not once for each.
+struct AnyStrategy<'a>(&'a dyn Fn(&mut TestRunner) -> Result<Tree<'a>, Reason>);
+
+type Tree<'a> = Box<dyn ValueTree<Value = Case<'a>> + 'a>;
+
+impl Debug for AnyStrategy<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        f.write_str("AnyStrategy")
+    }
+}
+
+impl<'a> Strategy for AnyStrategy<'a> {
+    type Tree = Tree<'a>;
+    type Value = Case<'a>;
+
+    fn new_tree(&self, runner: &mut TestRunner) -> Result<Tree<'a>, Reason> {
+        (self.0)(runner)
+    }
+}
+
+/// A value of any type, that is shown as it is, with its check.
+struct Case<'a>(Box<dyn Check + 'a>);
+
+trait Check {
+    fn check(self: Box<Self>) -> Result<(), TestCaseError>;
+    fn show(&self, f: &mut Formatter<'_>) -> std::fmt::Result;
+}
+
+impl Debug for Case<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        self.0.show(f)
+    }
+}
+
+/// A value, or the tree of values it shrinks along, and the check.
+struct Checked<'a, T, C> {
+    part: T,
+    check: &'a C,
+}
+
+impl<T: Debug, C: Fn(T) -> Result<(), TestCaseError>> Check for Checked<'_, T, C> {
+    fn check(self: Box<Self>) -> Result<(), TestCaseError> {
+        (self.check)(self.part)
+    }
+
+    fn show(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+        self.part.fmt(f)
+    }
+}
+
+impl<'a, T, C> ValueTree for Checked<'a, T, C>
+where
+    T: ValueTree<Value: 'a>,
+    C: Fn(T::Value) -> Result<(), TestCaseError>,
+{
+    type Value = Case<'a>;
+
+    fn current(&self) -> Case<'a> {
+        Case(Box::new(Checked { part: self.part.current(), check: self.check }))
+    }
+
+    fn simplify(&mut self) -> bool {
+        self.part.simplify()
+    }
+
+    fn complicate(&mut self) -> bool {
+        self.part.complicate()
+    }
 }
 
 /// What a shader was asked to draw into a pixel: the last attributes, and how often.
