@@ -126,6 +126,10 @@ impl<'a> Loops<'a> {
     }
 }
 
+/// Whether straight lines of 64×64 texels have loops of their own, with size, mask and multiplier as constants. On a Cortex-M4 these are
+/// part of instructions: 4 %. RISC-V and Armv6-M have none for constants so large.
+const BY_CONSTANTS: bool = !(IS_ARMV6M || cfg!(target_arch = "riscv32"));
+
 /// Along a straight line of packed coordinates, in blocks so short that truncated steps do not matter: of a texture's size, and
 /// so many pixels.
 #[inline(always)]
@@ -182,9 +186,8 @@ impl Loops<'_> {
     /// Along a straight line of packed coordinates.
     #[inline(always)]
     fn line_packed<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
-        // With the size of most textures as constants, where that is faster.
         if let Known::Of64x64(texels) = self.known
-            && !IS_ARMV6M
+            && BY_CONSTANTS
         {
             let texel = squared::<6, _>(self.texture, texels);
             let log2 = ([6; 2], 6);
