@@ -150,14 +150,18 @@ impl Attribute {
         self.bounded(if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) })
     }
 
-    /// How much more than the least it is, in I16F16, from the plane's value and 1/q in 17 bits, as
-    /// [`short`](crate::math::recip::short) has it, and the leading zeros of q. Beyond the range, if rounding takes it there.
+    /// How much more than the least it is, in I16F16, and its step where q stays the same: from the plane's value and step and 1/q in 17
+    /// bits, as [`short`](crate::math::recip::short) has it, and the leading zeros of q. Beyond the range, if rounding takes it there.
     #[inline]
-    pub(crate) fn above(&self, value: i32, reciprocal: u32, zeros: u32) -> u32 {
-        let product = mul_17(value, reciprocal);
+    pub(crate) fn above(&self, (value, step): (i32, i32), reciprocal: u32, zeros: u32) -> (u32, i32) {
+        let (product, step) = (mul_17(value, reciprocal), mul_17(step, reciprocal));
         let down = self.shift() - zeros as i32;
-        let offset = if down >= 0 { product >> (down & 31) } else { self.scaled_up(product, -down) };
-        offset.wrapping_sub(self.low) as u32
+        let (offset, step) = if down >= 0 {
+            (product >> (down & 31), step >> (down & 31))
+        } else {
+            (self.scaled_up(product, -down), step << (-down & 31))
+        };
+        (offset.wrapping_sub(self.low) as u32, step)
     }
 
     /// What comes out is times 2^this, modulo 2³².

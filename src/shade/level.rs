@@ -5,7 +5,7 @@
 //! - Assumes: q is above 0 along the row, and changes by less than 2¹² a pixel.
 
 use super::curve::Linear;
-use crate::num::{mul_17, mul_high};
+use crate::num::mul_high;
 use crate::raster::{Attribute, Place};
 
 /// An attribute's straight line where q is the same all along, or with its step where it nearly is; v keeps an inset from its ends.
@@ -21,18 +21,17 @@ pub(super) fn level(
     let plane = &attribute.plane;
     // 17 bits of 1/q do: the ends are held in the range.
     let reciprocal = (place.reciprocal as u32 + (1 << 13)) >> 14;
-    let above = attribute.above(plane.at(place.x, place.y) as i32, reciprocal, place.zeros);
+    let value = plane.at(place.x, place.y) as i32;
     // Of three pixels or more, whose values are within ±2³⁰, a step is less than that.
     let mut step = if steps > 0 { plane.steps[0] } else { 0 };
     if q_step != 0 {
+        let (above, _) = attribute.above((value, 0), reciprocal, place.zeros);
         step = step.wrapping_sub(bend_of_level(attribute, above, q_step));
     }
-    let step = mul_17(step, reciprocal);
-    let down = attribute.shift() - place.zeros as i32;
-    let step = if down >= 0 { step >> (down & 31) } else { step << (-down & 31) };
+    let line_above = attribute.above((value, step), reciprocal, place.zeros);
     let (at, step) = match inset {
-        Some(inset) => attribute.along_inside((above, step), steps as i32, inset),
-        None => attribute.along((above, step), steps as i32),
+        Some(inset) => attribute.along_inside(line_above, steps as i32, inset),
+        None => attribute.along(line_above, steps as i32),
     };
     let scale_log2 = attribute.scale_log2();
     *line = Linear { at: (at << scale_log2) as u32, slope: step << scale_log2 };
