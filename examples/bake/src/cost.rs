@@ -14,40 +14,50 @@ pub type Cycles = [f64; 2];
 /// Views of a turntable that are averaged.
 const VIEWS: u32 = 8;
 
-const CALL: Cycles = [10552.0, 5483.0];
-const CALL_LIT: Cycles = [12109.0, 6308.0];
-const VERTEX: Cycles = [277.0, 157.0];
-const VERTEX_LIT: Cycles = [145.0, 117.0];
+const CALL: Cycles = [10352.0, 5472.0];
+const CALL_LIT: Cycles = [11906.0, 6293.0];
+const VERTEX: Cycles = [272.0, 156.0];
+const VERTEX_LIT: Cycles = [145.0, 116.0];
 const CULLED: Cycles = [141.0, 86.0];
-/// A triangle of 1 pixel, one of 21 pixels in 6 rows: flat, Gouraud, textured, texture × light.
-const TRIANGLES: [[Cycles; 2]; 4] = [
-    [[1164.0, 778.0], [1570.0, 1063.0]],
-    [[2446.0, 1532.0], [3688.0, 2433.0]],
-    [[2444.0, 1588.0], [3736.0, 2530.0]],
-    [[2779.0, 1781.0], [5180.0, 3107.0]],
+/// A triangle of 1 pixel, one of 21 pixels in 6 rows: flat, Gouraud, textured, texture × light, Gouraud in greys.
+const TRIANGLES: [[Cycles; 2]; 5] = [
+    [[1081.0, 734.0], [1487.0, 1019.0]],
+    [[2411.0, 1494.0], [3628.0, 2375.0]],
+    [[2385.0, 1530.0], [3626.0, 2286.0]],
+    [[2703.0, 1725.0], [5008.0, 2910.0]],
+    [[1825.0, 1181.0], [2494.0, 1670.0]],
 ];
 /// A row and a pixel more of a small triangle.
-const SMALL_ROW: Cycles = [130.0, 80.0];
-const SMALL_PIXEL: Cycles = [24.0, 16.0];
+const SMALL_ROW: Cycles = [100.0, 65.0];
+const SMALL_PIXEL: Cycles = [24.0, 15.0];
+/// What depth takes more of a small triangle, of each row and of each pixel of it. (A row more has it already.)
+const DEPTH: [Cycles; 3] = [[150.0, 90.0], [25.0, 15.0], [10.0, 8.0]];
 /// What a small textured triangle takes more that is bent by perspective, and each row of it. A third of the triangles of `bench`'s torus
 /// are, seen from the distance of its own size.
 const BENT: Cycles = [1900.0, 1300.0];
 const BENT_ROW: Cycles = [160.0, 100.0];
 const BENT_SHARE: f64 = 1.0 / 3.0;
-/// A row and a pixel of a large one, of a floor with depth: flat, Gouraud, textured, texture × light; clamped as repeated.
-const LARGE: [[Cycles; 2]; 4] = [
-    [[234.0, 179.0], [12.4, 9.8]],
-    [[847.0, 576.0], [34.9, 22.5]],
-    [[764.0, 510.0], [20.0, 15.9]],
-    [[1043.0, 715.0], [63.0, 38.9]],
+/// A row and a pixel of a large one, of a floor with depth: likewise, greys as colours, and clamped as repeated.
+const LARGE: [[Cycles; 2]; 5] = [
+    [[234.0, 174.0], [12.4, 9.8]],
+    [[801.0, 563.0], [34.9, 22.5]],
+    [[732.0, 477.0], [20.0, 15.6]],
+    [[997.0, 682.0], [63.0, 38.6]],
+    [[801.0, 563.0], [34.9, 22.5]],
 ];
 /// The same cut out by a mask, or with alpha: flat, textured; texture × light.
-const MASKED: [Cycles; 2] = [[199.0, 151.0], [229.1, 142.4]];
-const FLAT_ALPHA: [Cycles; 2] = [[292.0, 236.0], [92.7, 48.9]];
-const ALPHA: [Cycles; 2] = [[294.0, 236.0], [114.6, 63.5]];
-const LIT_ALPHA: [Cycles; 2] = [[294.0, 236.0], [166.3, 92.9]];
+const MASKED: [Cycles; 2] = [[200.0, 145.0], [228.2, 142.3]];
+const FLAT_ALPHA: [Cycles; 2] = [[286.0, 227.0], [92.9, 48.9]];
+const ALPHA: [Cycles; 2] = [[287.0, 227.0], [113.8, 62.4]];
+const LIT_ALPHA: [Cycles; 2] = [[287.0, 227.0], [165.1, 91.8]];
 /// What a row of a small triangle takes more that is not opaque.
 const ROW_OF_SMALL: Cycles = [600.0, 400.0];
+
+/// Whether a colour is a grey, which is one channel in white light: RGB565.
+fn is_gray(color: u16) -> bool {
+    let [red, green, blue] = [color >> 11, color >> 6 & 31, color & 31];
+    red == green && green == blue
+}
 
 /// Rows of a triangle of so many pixels: the page's of 21 has 6, and of 40 has 9.
 fn rows_of(pixels: f64) -> f64 {
@@ -58,13 +68,14 @@ fn rows_of(pixels: f64) -> f64 {
 fn mesh(material: &BakedMaterial, stats: &Stats, pixels: usize) -> Cycles {
     let kind = match (material.paint, material.is_lit) {
         (Paint::Flat(_), false) => 0,
+        (Paint::Flat(color), true) if is_gray(color) => 4,
         (Paint::Flat(_) | Paint::Gouraud, _) => 1,
         (Paint::Texture { .. }, false) => 2,
         (Paint::Texture { .. }, true) => 3,
     };
     let is_masked = matches!(material.paint, Paint::Texture { is_masked: true, .. });
     let special = match (material.alpha.is_some(), kind) {
-        (true, 0 | 1) => Some(FLAT_ALPHA),
+        (true, 0 | 1 | 4) => Some(FLAT_ALPHA),
         (true, 2) => Some(ALPHA),
         (true, _) => Some(LIT_ALPHA),
         (false, _) if is_masked => Some(MASKED),
@@ -78,15 +89,19 @@ fn mesh(material: &BakedMaterial, stats: &Stats, pixels: usize) -> Cycles {
         let lit = if material.is_lit { VERTEX_LIT[core] * lit_share } else { 0.0 };
         let [one, twenty_one] = TRIANGLES[kind].map(|figure| figure[core]);
         let rows = rows_of(each);
-        let bent = if kind >= 2 { BENT_SHARE * (BENT[core] + BENT_ROW[core] * rows) } else { 0.0 };
+        let [depth, depth_row, depth_pixel] = DEPTH.map(|figure| figure[core]);
+        let depth = depth + depth_row * rows.min(6.0) + depth_pixel * each.min(21.0);
+        let bent =
+            if matches!(kind, 2 | 3) { BENT_SHARE * (BENT[core] + BENT_ROW[core] * rows) } else { 0.0 };
         let triangle = if let Some([row, pixel]) = special {
             one + rows * (row[core] + ROW_OF_SMALL[core]) + each * pixel[core]
         } else if each <= 21.0 {
-            one + (twenty_one - one) * (each - 1.0).max(0.0) / 20.0 + bent
+            one + (twenty_one - one) * (each - 1.0).max(0.0) / 20.0 + depth + bent
         } else {
             let small = twenty_one
                 + SMALL_ROW[core] * (rows - 6.0).max(0.0)
                 + SMALL_PIXEL[core] * (each - 21.0)
+                + depth
                 + bent;
             let [row, pixel] = LARGE[kind].map(|figure| figure[core]);
             // More than 32 rows of a triangle are drawn as large ones are.
@@ -131,7 +146,9 @@ mod tests {
         plain("a vertex", VERTEX);
         plain("… its light from one directional light", VERTEX_LIT);
         plain("a culled triangle", CULLED);
-        for (kind, figures) in ["flat", "Gouraud", "textured", "texture × light"].iter().zip(TRIANGLES) {
+        for (kind, figures) in
+            ["flat", "Gouraud", "textured", "texture × light", "Gouraud in greys"].iter().zip(TRIANGLES)
+        {
             plain(&format!("a drawn triangle of 1 pixel, {kind}"), figures[0]);
             plain(&format!("a drawn triangle of 21 pixels in 6 rows, {kind}"), figures[1]);
         }
@@ -143,6 +160,7 @@ mod tests {
             ("| Gouraud | default | a floor, level |", LARGE[1]),
             ("| texture, repeated | default | a floor, level |", LARGE[2]),
             ("| texture × light | default | a floor, level |", LARGE[3]),
+            ("| Gouraud | default | a floor, level |", LARGE[4]),
             ("| texture, cut out by a mask |", MASKED),
             ("| flat, alpha |", FLAT_ALPHA),
             ("| texture, alpha |", ALPHA),
@@ -151,7 +169,8 @@ mod tests {
             let line = page.lines().find(|line| line.starts_with(label)).expect("a row of the page");
             assert!(line.contains(&pair(figures)), "{line} has no {}", pair(figures));
         }
-        assert!(page.contains("130 / 80 cycles") && page.contains("24 / 16"));
+        assert!(page.contains("100 / 65 cycles") && page.contains("24 / 15"));
+        assert!(page.contains("150 / 90 a triangle, 25 / 15 a row and 10 / 8 a pixel"));
         assert!(page.contains("1900 / 1300 more") && page.contains("160 / 100 a row"));
         assert!(page.contains("about 600 / 400 a row more"));
     }
@@ -170,7 +189,7 @@ mod tests {
         };
         let textured = Paint::Texture { texture: 0, is_clamped: false, is_masked: false };
         for (paint, counted, most) in
-            [(Paint::Gouraud, [1.63e6, 1.08e6], 0.1), (textured, [2.85e6, 1.71e6], 0.25)]
+            [(Paint::Flat(0xffff), [1.54e6, 0.99e6], 0.1), (textured, [2.81e6, 1.66e6], 0.25)]
         {
             let cycles = mesh(&material(paint), &stats, 6826);
             for (estimated, counted) in cycles.iter().zip(counted) {

@@ -8,7 +8,7 @@ use fixel::num::{I12F4, I16F16};
 use fixel::{Affine, DepthFormat, Exact, Fog, Mask, Quality, QuarterPixel, Surface, prelude::*};
 
 /// A surface by its number: flat, Gouraud, textured (repeated), textured (clamped), textured × light, Gouraud × light,
-/// textured (mirrored), textured (clamped) × light.
+/// textured (mirrored), textured (clamped) × light, white in white light.
 /// Sides turned to where `cull` says are left out.
 fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'static, Rgb565, D> {
     fn of<D: DepthFormat, Q: Quality>(
@@ -25,7 +25,8 @@ fn surface<D: DepthFormat, Q: Quality>(number: u32, cull: Cull) -> Surface<'stat
         4 => of::<D, Q>(Material::textured(&WALL).lit(), cull),
         5 => of::<D, Q>(Material::gouraud().lit(), cull),
         6 => of::<D, Q>(Material::mirrored(&WALL), cull),
-        _ => of::<D, Q>(Material::clamped(&WALL).lit(), cull),
+        7 => of::<D, Q>(Material::clamped(&WALL).lit(), cull),
+        _ => of::<D, Q>(Material::flat(Rgb565::WHITE).lit(), cull),
     }
 }
 
@@ -207,7 +208,7 @@ mod tests {
 
     #[test]
     fn rectangles_cover_what_their_shape_says() {
-        for (surface, quality, shape) in (0..8 * 3 * 64).map(|i| (i % 8, i / 8 % 3, i / 24)) {
+        for (surface, quality, shape) in (0..9 * 3 * 64).map(|i| (i % 9, i / 9 % 3, i / 27)) {
             let (mut pixels, mut depth) = (vec![0; PIXELS], vec![0; PIXELS]);
             let mut frame = Deep::new(SIZE, &mut pixels, &mut depth).expect("the size fits");
             rectangle(surface, quality, shape, &mut frame);
