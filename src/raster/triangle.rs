@@ -47,8 +47,8 @@ pub struct TriangleSetup {
     /// Of a bent one: whether its planes may leave the range of the corners by more than [`TriangleSetup::contract`] allows for.
     pub(crate) is_extreme: bool,
     pub(crate) attributes: [Attribute; ATTRIBUTES],
-    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small
-    /// triangle the uppermost.
+    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small triangle the uppermost. Of a small one that is neither
+    /// held nor bent they stay what they were: nothing asks for them.
     pub(super) corners: [[i16; 2]; 3],
     /// 1 / (twice the area in 1/256 px²); not of small triangles.
     pub(super) area: Reciprocal,

@@ -6,7 +6,7 @@
 //!
 //! A row of such a triangle has two or three pixels. To hand them on, first to a depth test and then to a loop that draws them,
 //! takes longer than to draw them. So both loops stand side by side here, once for each fill and depth format: one counts the pixels
-//! that are in front, the next draws them.
+//! that are in front, the next draws them. Where there are registers for all that both need, they are one loop.
 //!
 //! All that belongs to a row is a product with its number: nothing is carried from row to row.
 
@@ -25,6 +25,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
         L: Fill<F::Word> + FillRow<N, Word = F::Word>,
     {
         let Self { setup, target } = self;
+        // Hidden on Armv6-M: what rows read of it would be kept, in registers that there are not.
         let setup = if IS_ARMV6M { black_box(setup) } else { setup };
         let Target { rows, origin, width, pixels, depth, .. } = target;
         let width = *width;
@@ -102,7 +103,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
 }
 
 /// Leaves of a row what follows its hidden pixels. Of a run of so many pixels from (x, y) on the last `left` were not tested, but for the
-/// first of them, which is hidden. Returns how many are visible before that.
+/// first of them, which is hidden. Returns how many are visible before that, and the end of the rows that are still to be drawn.
 ///
 /// It finds all anew, so that nothing is kept for it. A format is asked once to test and store for each pixel of a triangle, as one that
 /// counts them expects.
