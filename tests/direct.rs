@@ -840,6 +840,39 @@ fn nothing_is_too_extreme_on_the_screen_1000_cases() {
 }
 
 #[test]
+fn a_small_triangle_shows_nothing_on_a_target_at_an_end_of_all_coordinates() {
+    let at = |x: i32, y: i32| ScreenVertex {
+        x: I12F4::from_num(x),
+        y: I12F4::from_num(y),
+        q: U1F31::from_num(0.5),
+        ..ScreenVertex::default()
+    };
+    let (shader, ends) =
+        (Material::gouraud(), [i32::MIN, i32::MIN + 1, -2000, 2000, i32::MAX - 20, i32::MAX]);
+    let mut draws = 0;
+    for (x, y) in [(-900, -900), (-900, 900), (900, -900), (900, 900), (-3, -3)] {
+        let corners = [at(x, y), at(x, y + 9), at(x + 9, y)];
+        let triangle = ShadedTriangle::new(&corners, Cull::None, &shader).expect("within range");
+        // Beyond a side, and as wide or high as all columns or rows, or neither.
+        let areas = ends
+            .into_iter()
+            .flat_map(|end| [((end, -1023), (9, 2047)), ((-1023, end), (2047, 9)), ((end, end), (9, 9))]);
+        for ((left, top), (width, height)) in areas {
+            let mut screen = Screen::new(Rectangle::new(Point::new(left, top), Size::new(width, height)));
+            assert_eq!(triangle.draw(&mut screen), Ok(()));
+            assert!(screen.pixels.is_empty(), "{x}, {y} on {left}, {top}");
+            draws += 1;
+        }
+        // And on one that has them all.
+        let mut screen = Screen::new(Rectangle::new(Point::new(-1023, -1023), Size::new(u32::MAX, u32::MAX)));
+        assert_eq!(triangle.draw(&mut screen), Ok(()));
+        // Centres at or right of the left side, and left of the other: 9 + 8 + … or one less a row.
+        assert!([36, 45].contains(&screen.pixels.len()), "{}", screen.pixels.len());
+    }
+    assert_eq!(draws, 90);
+}
+
+#[test]
 fn nothing_is_too_extreme_in_the_world_3000_cases() {
     let texels = texels(10);
     let texture = Texture::new(&texels, 5, 5);

@@ -172,10 +172,11 @@ where
     }
 }
 
-/// Of so many columns or rows from `start` on those within reach.
+/// Of so many columns or rows from `start` on those within reach; of none an empty range that is, too.
 fn within(start: i32, length: u32) -> Range<i32> {
-    let end = (i64::from(start) + i64::from(length)).min(i64::from(REACH.end)) as i32;
-    start.max(REACH.start)..end
+    let end = i64::from(start) + i64::from(length);
+    let reached = |at: i64| at.clamp(REACH.start.into(), REACH.end.into()) as i32;
+    reached(start.into())..reached(end)
 }
 
 /// The colours of what is seen of a row.
