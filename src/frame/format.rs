@@ -199,11 +199,12 @@ impl PixelFormat for Rgb565 {
 fn in_light(texel: u16, light: [u32; 3]) -> u16 {
     if IS_ARMV6M {
         // No constant of more than 8 bits, each of which would be a register less. x / 255 = x / 256 · (1 + 1/256 + …): exact
-        // to the nearest for these x.
+        // to the nearest for these x. The half is added first: added last, it would be shifted to its channel's place, and be such a
+        // constant.
         let texel = split(texel);
         let [red, green, blue] = core::array::from_fn(|i| {
-            let x = texel[i] * light[i];
-            (x + (x >> 8) + 128) >> 8
+            let x = texel[i] * light[i] + 128;
+            (x + (x >> 8)) >> 8
         });
         return (red << 11 | green << 5 | blue) as u16;
     }
