@@ -137,7 +137,7 @@ impl Attribute {
     /// How much more than the least it is at a place, in I16F16, without `scale_log2`: never more than the range.
     #[inline]
     pub(crate) fn at(&self, place: &Place) -> i32 {
-        self.divided(self.plane.at(place.x, place.y) as i32, place.reciprocal, place.zeros)
+        self.divided(self.plane.at([place.x, place.y]) as i32, place.reciprocal, place.zeros)
     }
 
     /// Likewise, from the plane's value.

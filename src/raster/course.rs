@@ -147,17 +147,13 @@ impl Fall {
         }
     }
 
-    /// Lifts a coordinate, whose plane is linear, from its end that is kept: a margin inside the range. `pixel` lies in the triangle, or
-    /// beside it.
+    /// Lifts a coordinate, whose plane is linear, from its end that is kept: a margin inside the range.
     #[inline(never)]
-    pub(super) fn lift(&self, plane: &mut Plane, end: i32, [x, y]: [i32; 2]) {
+    pub(super) fn lift(&self, plane: &mut Plane, end: i32) {
         // 9/16 of E are 9/64 · fall of the range. Rounded to nearest, as the steps' errors add up.
         let part = |of: i32| (mul_16(of, (self.all * 9) >> 5) + 1) >> 1;
-        let here = plane.at(x, y) as i32;
         plane.steps = plane.steps.map(|step| step - part(step));
-        plane.origin = 0;
-        plane.origin =
-            (here as u32).wrapping_add_signed(part(end.wrapping_sub(here))).wrapping_sub(plane.at(x, y));
+        plane.origin = plane.origin.wrapping_add_signed(part(end.wrapping_sub(plane.origin as i32)));
     }
 
     /// q_min/q_mid with 15 fraction bits: 1/(1 + f/2) ≈ 1 − f/2, f being what q varies by. At most 1/64 too small.
@@ -281,7 +277,9 @@ mod tests {
             let steps = [1, 2].map(|i| (linear[i] * 65536.0).round() as i32);
             let mut attribute = Attribute::default();
             attribute.range = span;
-            attribute.plane = Plane { origin: (linear[0] * 65536.0).round() as i64 as u32, steps };
+            let [left, top] = sixteenths[0].map(|at| f64::from(at >> 4));
+            let first = (linear[0] + linear[1] * left + linear[2] * top) * 65536.0;
+            attribute.plane = Plane { origin: first.round() as i64 as u32, steps };
             let q_plane = through(&corners, w);
             let thinness = (f64::from(longest) * 16.0 / f64::from(area) * 4096.0).ceil() as u32;
             let loss = falling.loss([1, 2].map(|i| q_plane[i].round() as i32), thinness);
@@ -294,7 +292,7 @@ mod tests {
                     Some(Kept::Least) => least_u,
                     None => return Ok(()),
                 };
-                falling.lift(&mut attribute.plane, end, sixteenths[0].map(|at| at >> 4));
+                falling.lift(&mut attribute.plane, end);
             } else if course == Course::Straight && span > 0 && kept(&at, &q).is_none() {
                 course = Course::Bent; // in no order: counted apart
             }
@@ -313,12 +311,8 @@ mod tests {
             // Along all edges and medians, where the error is the largest.
             let products = through(&corners, [0, 1, 2].map(|i| u[i] * w[i]));
             let value = |plane: [f64; 3], [x, y]: [f64; 2]| plane[0] + plane[1] * x + plane[2] * y;
-            // From corner 0's pixel: far outside a plane may wrap.
-            let pixel = sixteenths[0].map(|at| at >> 4);
-            let here = attribute.plane.at(pixel[0], pixel[1]) as i32;
-            let [here, right, down] =
-                [here, attribute.plane.steps[0], attribute.plane.steps[1]].map(|of| f64::from(of) / 65536.0);
-            let [left, top] = pixel.map(f64::from);
+            let Plane { origin, steps: [right, down] } = attribute.plane;
+            let [here, right, down] = [origin as i32, right, down].map(|of| f64::from(of) / 65536.0);
             for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
                 for (part, aside) in (0..=16).flat_map(|part| [0.0, 0.1, 1.0 / 3.0].map(|aside| (f64::from(part) / 16.0, aside))) {
                     let place = [0, 1].map(|axis| {

@@ -28,9 +28,7 @@ pub(super) struct Gradients {
     /// By how much slopes are shifted left, −8 … 9: `zeros` − 20. These are 2⁴ for 16 sixteenths, 2⁸ for the rises' unit, 2¹⁶ that
     /// `mul_17` took away, and 2^(`zeros` − 48).
     up: i32,
-    /// Corner 0's pixel.
-    pub(super) pixel: [i32; 2],
-    /// From corner 0 to the centre of that pixel, −7 … 8 sixteenths.
+    /// From corner 0 to the centre of the [first pixel](super::triangle::TriangleSetup::first_pixel), −7 … 8 and 0 … 15 sixteenths.
     pub(super) to_center: [i32; 2],
 }
 
@@ -43,8 +41,7 @@ impl Gradients {
             edges: [[cy, -by], [-cx, bx]],
             reciprocal,
             up: zeros as i32 - 20,
-            pixel: top.map(|at| at >> 4),
-            to_center: top.map(|at| 8 - (at & 15)),
+            to_center: [8 - (top[0] & 15), 15 - ((top[1] + 7) & 15)],
         }
     }
 
@@ -77,10 +74,7 @@ impl Gradients {
             let slope = mul_17(rise_1 * b + rise_2 * c, self.reciprocal);
             let step = if self.up < 0 { slope >> (-self.up & 31) } else { slope << (self.up & 31) };
             plane.steps[axis] = step;
-            plane.origin = plane
-                .origin
-                .wrapping_add_signed((step >> 4) * self.to_center[axis])
-                .wrapping_sub(self.pixel[axis].wrapping_mul(step) as u32);
+            plane.origin = plane.origin.wrapping_add_signed((step >> 4) * self.to_center[axis]);
         }
     }
 

@@ -53,11 +53,6 @@ impl TriangleSetup {
         if are_set && let Some(uv) = &needs.code.uv {
             (uv.complete_held)(self, small, &scaling, is_level);
         }
-        // Held planes begin at corner 0's pixel.
-        let [x, y] = gradients.pixel;
-        for Attribute { plane, .. } in &mut self.attributes {
-            plane.origin = plane.at(x, y);
-        }
         are_set
     }
 
@@ -96,10 +91,10 @@ impl TriangleSetup {
         let kept_u = if are_little[0] { None } else { kept_end(u, 0, small, fall, loss)? };
         let kept_v = if are_little[1] { None } else { kept_end(v, 1, small, fall, loss)? };
         if let Some(kept) = kept_u {
-            fall.lift(&mut u.plane, kept, small.gradients.pixel);
+            fall.lift(&mut u.plane, kept);
         }
         if let Some(kept) = kept_v {
-            fall.lift(&mut v.plane, kept, small.gradients.pixel);
+            fall.lift(&mut v.plane, kept);
         }
         Some(())
     }
@@ -151,7 +146,7 @@ impl TriangleSetup {
         v.keep_straight_inside(needs.packing.inset.into());
     }
 
-    /// An attribute at a pixel of a small triangle, I16F16, and its step along a row of at most `longest` steps. One that is held does
+    /// An attribute of a small triangle at a pixel beyond the first one, I16F16, and its step along a row of at most `longest` steps. One that is held does
     /// not leave its range.
     #[inline]
     pub(crate) fn along(&self, i: usize, place: [i32; 2], steps: i32) -> (i32, i32) {
@@ -160,25 +155,16 @@ impl TriangleSetup {
         };
         if self.is_held || self.is_bent && i < 2 {
             let bend = self.bends.get(i).unwrap_or(&[0; 3]);
-            return along_one(attribute, bend, self.beyond_corner(place), steps);
+            return along_one(attribute, bend, place, steps);
         }
-        let [x, y] = place;
-        (attribute.plane.at(x, y) as i32, attribute.plane.steps[0])
+        (attribute.plane.at(place) as i32, attribute.plane.steps[0])
     }
 
     /// u and v of a bent triangle, as [`TriangleSetup::along`].
     #[inline(always)]
     pub(crate) fn along_bent(&self, place: [i32; 2], steps: i32) -> [(i32, i32); 2] {
         let [u, v, ..] = &self.attributes;
-        let place = self.beyond_corner(place);
         [along_held(u, &self.bends[0], place, steps), along_held(v, &self.bends[1], place, steps)]
-    }
-
-    /// From corner 0's pixel to a pixel.
-    #[inline]
-    fn beyond_corner(&self, [x, y]: [i32; 2]) -> [i32; 2] {
-        let [corner_x, corner_y] = self.corners[0];
-        [x - i32::from(corner_x >> 4), y - i32::from(corner_y >> 4)]
     }
 }
 
@@ -205,7 +191,7 @@ fn kept_end(
     Some(Some(kept))
 }
 
-/// A held attribute m columns right and n rows below corner 0's pixel, I16F16, and its step along a row of at most `longest` steps, in
+/// A held attribute m columns right and n rows below the first pixel, I16F16, and its step along a row of at most `longest` steps, in
 /// neither of which it leaves the range.
 #[inline(always)]
 fn along_held(attribute: &Attribute, &[xx, xy, yy]: &[i32; 3], [m, n]: [i32; 2], steps: i32) -> (i32, i32) {
@@ -222,8 +208,8 @@ fn along_one(attribute: &Attribute, bend: &[i32; 3], place: [i32; 2], steps: i32
     along_held(attribute, bend, place, steps)
 }
 
-/// The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid, from ∇u and ∇q/q_mid. u's steps are below 2³⁰, a range of 2²⁷ over at
-/// least 1/8 px, and q's are at most ¼: 2²⁸, and twice that for xy.
+/// The coefficients of x², xy and y² in −(∇u·p)(∇q·p)/q_mid, from ∇u and ∇q/q_mid. u's steps are below 2²⁹, a range of 2²⁶ over at
+/// least 1/8 px, and q's are at most ¼: 2²⁷, and twice that for xy.
 #[inline(never)]
 fn set_quadratic(to: &mut [i32; 3], &[right, down]: &[i32; 2], [q_right, q_down]: [i32; 2]) {
     *to = [
@@ -245,15 +231,14 @@ fn bend_rise(rise: &mut [i32; 2], rises_of_q: &[i32; 2]) {
 /// Bends the plane of a texture coordinate whose steps are V, from the coefficients of x², xy and y².
 #[inline(never)]
 fn bend_plane(plane: &mut Plane, &[xx, xy, yy]: &[i32; 3], gradients: &Gradients) {
-    let ([x, y], [pixel_x, pixel_y]) = (gradients.to_center, gradients.pixel);
-    // The quadratic is evaluated by offsets (m, n) from the centre of corner 0's pixel, while p counts from corner 0:
+    let [x, y] = gradients.to_center;
+    // The quadratic is evaluated by offsets (m, n) from the centre of the first pixel, while p counts from corner 0:
     // it is (m + x/16, n + y/16). What is linear in m and n of that goes into the steps, and what is constant into
-    // the origin. With x and y at most 8, sums are below 2³¹.
+    // the origin. With x at most 8 and y at most 15, and coefficients below 2²⁷, 2²⁸ and 2²⁷, sums are below 2³¹.
     let more = [(xx >> 3) * x + (xy >> 4) * y, (xy >> 4) * x + (yy >> 3) * y];
-    // And the plane begins at that pixel.
     plane.origin = plane
-        .at(pixel_x, pixel_y)
-        .wrapping_add_signed(((xx >> 5) * (x * x) + (xy >> 5) * (x * y) + (yy >> 5) * (y * y)) >> 3);
+        .origin
+        .wrapping_add_signed(((xx >> 6) * (x * x) + (xy >> 6) * (x * y) + (yy >> 6) * (y * y)) >> 2);
     for (step, more) in plane.steps.iter_mut().zip(more) {
         *step = step.wrapping_add(more);
     }

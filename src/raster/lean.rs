@@ -48,7 +48,7 @@ impl TriangleSetup {
     #[cold]
     fn lean_large(&mut self, vertices: &[&ScreenVertex; 3], scaling: &Scaling, bits: i32) {
         let [width, height] = [0, 1].map(|axis| self.extent(axis)).map(|[first, last]| last - first + 1);
-        if self.sliver {
+        if self.planes.is_sliver() {
             // Evaluated by weights where a run begins: off by 4 units at most (24 are allowed). Then half a unit per column.
             self.lean(vertices, scaling, 0, 24 + (width >> 1));
         } else if bits < 3 {
@@ -98,6 +98,7 @@ impl TriangleSetup {
         [slack, carries]: [u32; 2],
         most: i32,
     ) -> u32 {
+        let first = self.first_pixel();
         let direction =
             direction(&edges(&self.corners()), [at[1].wrapping_sub(at[0]), at[2].wrapping_sub(at[0])]);
         let attribute = &mut self.attributes[i];
@@ -110,11 +111,11 @@ impl TriangleSetup {
         }
         let mut plane = attribute.plane;
         let mut behind = most;
-        if !self.sliver {
+        if !self.planes.is_sliver() {
             let mut snapped = plane;
-            snapped.snap(self.corners[0], slack, self.is_small);
+            snapped.snap(slack, self.planes.is_small());
             let [mut errors, by_snapped] =
-                [plane, snapped].map(|plane| plane.errors(&self.corners, at, attribute.least));
+                [plane, snapped].map(|plane| plane.errors(&self.corners, first, at, attribute.least));
             // Whichever has errors closer together.
             if by_snapped[1] - by_snapped[0] <= errors[1] - errors[0] {
                 (plane, errors) = (snapped, by_snapped);
@@ -126,7 +127,8 @@ impl TriangleSetup {
         let [first, last] = self.extent(0);
         let unit = packing.unit();
         // With a large texture (15 steps) triangles that are not small are drawn in blocks of 8 pixels.
-        let longest = if packing.steps == 15 && !self.is_small { 7 } else { u32::from(packing.steps) };
+        let longest =
+            if packing.steps == 15 && !self.planes.is_small() { 7 } else { u32::from(packing.steps) };
         let steps = longest.min((last - first) as u32);
         let room = (carries * unit) as i32;
         behind += room + (unit + steps * (step & (unit - 1))) as i32;

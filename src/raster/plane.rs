@@ -1,4 +1,4 @@
-//! A plane: a quantity that is linear on the screen, as its value at pixel (0, 0) and its steps per column and per row.
+//! A plane: a quantity that is linear on the screen, as its value at a triangle's first pixel and its steps per column and per row.
 //!
 //! - In: the value and the steps, which set-up computes.
 //! - Out: for texture coordinates, steps moved to round numbers, and by how much the plane misses the values at the corners.
@@ -10,7 +10,7 @@ use crate::num::mul_round;
 /// in the same fields.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Plane {
-    /// The value at the centre of pixel (0, 0). In a sliver: at corner 0.
+    /// The value at the centre of the [first pixel](super::triangle::TriangleSetup::first_pixel). In a sliver: at corner 0.
     pub(crate) origin: u32,
     /// The change over one column to the right, and over one row down. In a sliver: from corner 0 to corner 1, and to corner
     /// 2.
@@ -18,11 +18,11 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The value at a pixel's centre. Not of a sliver.
+    /// The value m columns right and n rows below the first pixel. Not of a sliver.
     #[inline]
-    pub(crate) fn at(&self, x: i32, y: i32) -> u32 {
+    pub(crate) fn at(&self, [m, n]: [i32; 2]) -> u32 {
         let [right, down] = self.steps;
-        self.origin.wrapping_add_signed(x.wrapping_mul(right).wrapping_add(y.wrapping_mul(down)))
+        self.origin.wrapping_add_signed(m.wrapping_mul(right).wrapping_add(n.wrapping_mul(down)))
     }
 
     /// The value at a pixel of a sliver, from the weights of corners 1 and 2, 31 fraction bits.
@@ -33,18 +33,16 @@ impl Plane {
     }
 
     /// For a texture coordinate, in I16F16: moves each step to the nearest multiple of 2⁻¹² if that is at most `error` units
-    /// away. Steps of a small triangle may be off by 2⁻¹⁶ of themselves more. The value stays what it is at the pixel of
-    /// `corner`, which is in 1/16 px.
+    /// away. Steps of a small triangle may be off by 2⁻¹⁶ of themselves more. The value stays what it is at the first pixel.
     ///
     /// Sprites have such steps: a whole texel per pixel, a half or a quarter. If rounding left one a unit too small, packed
     /// coordinates, which cut steps to *their* unit, would lose one of theirs at every pixel.
-    pub(super) fn snap(&mut self, corner: [i16; 2], error: u32, is_small: bool) {
-        for (step, at) in self.steps.iter_mut().zip(corner) {
+    pub(super) fn snap(&mut self, error: u32, is_small: bool) {
+        for step in &mut self.steps {
             let change = (step.wrapping_add(8) & !15).wrapping_sub(*step);
             let error = error + if is_small { step.unsigned_abs() >> 16 } else { 0 };
             if change.unsigned_abs() <= error {
                 *step = step.wrapping_add(change);
-                self.origin = self.origin.wrapping_sub(i32::from(at >> 4).wrapping_mul(change) as u32);
             }
         }
     }
@@ -53,13 +51,19 @@ impl Plane {
     /// none is positive. The plane is one of u − `least`; `values` are the right u at the corners, whose positions are in
     /// 1/16 px.
     #[inline(never)]
-    pub(super) fn errors(&self, corners: &[[i16; 2]; 3], values: &[i32; 3], least: i32) -> [i32; 2] {
-        let [right, down] = self.steps;
+    pub(super) fn errors(
+        &self,
+        corners: &[[i16; 2]; 3],
+        first: [i32; 2],
+        values: &[i32; 3],
+        least: i32,
+    ) -> [i32; 2] {
+        let ([right, down], [left, top]) = (self.steps, first.map(|at| at * 16 + 8));
         let mut errors = [0; 2];
         for (&[x, y], value) in corners.iter().zip(values) {
             let (x, y) = (i32::from(x), i32::from(y));
-            // From the centre of pixel (0, 0), 16 times.
-            let way = right.wrapping_mul(x - 8).wrapping_add(down.wrapping_mul(y - 8));
+            // From the centre of the first pixel, 16 times.
+            let way = right.wrapping_mul(x - left).wrapping_add(down.wrapping_mul(y - top));
             let error =
                 ((self.origin.wrapping_sub(value.wrapping_sub(least) as u32) << 4) as i32).wrapping_add(way);
             errors = [errors[0].min(error), errors[1].max(error)];

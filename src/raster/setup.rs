@@ -55,7 +55,7 @@ use super::plane::Plane;
 use super::scaling::Scaling;
 use super::slopes::Slopes;
 use super::straight::{Bend, Straight};
-use super::triangle::{TriangleSetup, edges};
+use super::triangle::{Planes, TriangleSetup, edges};
 use crate::geometry::{ScreenVertex, nearest_first};
 use crate::math::recip::Reciprocal;
 use crate::num::{normalise, shift_round_short, wide};
@@ -69,7 +69,7 @@ impl TriangleSetup {
     pub(super) fn set<const READS: bool>(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
         let vertices = &nearest_first(*vertices);
         self.set_corners(vertices);
-        (self.is_small, self.sliver, self.leans, self.straight) = (false, false, false, true);
+        (self.planes, self.leans, self.straight) = (Planes::Screen, false, true);
         if !READS && !needs.depth {
             return;
         }
@@ -87,7 +87,9 @@ impl TriangleSetup {
         let is_perspective = matches!(needs.straight, Straight::Below(_));
         slopes.sliver |=
             needs.every_pixel && (q_min < 1 << 19 && is_perspective || slopes.are_coarse(self.area.zeros));
-        self.sliver = slopes.sliver;
+        if slopes.sliver {
+            self.planes = Planes::Corners;
+        }
         if needs.depth {
             // Depth must not wrap where rounding takes it out of 0 … 2³¹: 2048 units, 1/16 of a depth step, are room
             // for that.
@@ -119,7 +121,8 @@ impl TriangleSetup {
             // Only v of packed coordinates is moved by carries: twice, as u may repeat within four pixels.
             let inset = i32::from(scaling.packing(1).inset);
             self.bends[1][2] = if inset > 1 { 2 * inset } else { 0 };
-            self.is_extreme = self.sliver || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
+            self.is_extreme =
+                self.planes.is_sliver() || needs.every_pixel || self.planes_leave_range(q[0], slopes.size);
             self.set_q_step(needs.every_pixel)
         };
         needs.each_attribute(&scaling, vertices, self.gray, |i, at, scale_log2| {
@@ -135,7 +138,7 @@ impl TriangleSetup {
                 return false;
             };
             slopes.set_plane(&mut attribute.plane, rise);
-            if !(self.straight || self.sliver && needs.every_pixel) {
+            if !(self.straight || self.planes.is_sliver() && needs.every_pixel) {
                 attribute.set_horizon(self.q_rises, self.q_step_zeros.into(), reciprocal);
             }
             true
@@ -159,7 +162,7 @@ impl TriangleSetup {
         let step = self.step(&self.q());
         let size = step.unsigned_abs();
         // Below 2¹² q changes by 2⁻⁸ of itself over 1023 pixels, if it is 2³⁰.
-        self.is_level = !self.sliver && size < if every_pixel { 1 } else { 1 << 12 };
+        self.is_level = !self.planes.is_sliver() && size < if every_pixel { 1 } else { 1 << 12 };
         let (mantissa, zeros) = normalise(size.max(1));
         (self.bends[1][0], self.q_step_zeros) = (mantissa as i32, zeros as u8);
         self.q_rises = step > 0;
@@ -183,7 +186,7 @@ impl TriangleSetup {
         };
         *rise = contract(attribute, *rise, i, scaling, self.is_extreme);
         attribute.plane.origin = 0;
-        if self.sliver && needs.every_pixel {
+        if self.planes.is_sliver() && needs.every_pixel {
             // For `resolve_in_sliver`.
             return;
         }

@@ -54,7 +54,8 @@ impl SmallEdges {
 pub(crate) struct Spans {
     /// Of each row the first column and the end (exclusive), which may be less.
     table: [[u8; 2]; WIDEST],
-    /// The screen's row and column from which the table counts. The column may be left of the screen.
+    /// The screen's row and column from which the table counts: [`WIDEST`] columns left of the triangle's
+    /// [first pixel](super::triangle::TriangleSetup::first_pixel). So the column may be left of the screen.
     pub(crate) row: i16,
     pub(crate) column: i16,
     /// The rows of the table that lie in the window.

@@ -2,6 +2,7 @@
 
 use super::attribute::Attribute;
 use super::plane::Plane;
+use crate::frame::first_center;
 use crate::geometry::{ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
 use crate::num::{leading_zeros, mul_round, normalise, shift_round, wide, wide_inlined};
@@ -12,13 +13,36 @@ pub(crate) const STRAIGHT: u8 = 31;
 /// The most attributes that a shader can read: u, v, red, green, blue.
 pub(crate) const ATTRIBUTES: usize = 5;
 
+/// What the planes of a triangle hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Planes {
+    /// Values of which the first is that at pixel (0, 0) of the screen.
+    Screen,
+    /// The same, from its [first pixel](TriangleSetup::first_pixel) on: it is [small](super::small). Its depth is never below 1 of 2¹⁶.
+    Small,
+    /// Values at its corners: it is a [sliver](super::setup), or of very different distances.
+    Corners,
+}
+
+impl Planes {
+    #[inline(always)]
+    pub(crate) fn is_small(self) -> bool {
+        self == Self::Small
+    }
+
+    #[inline(always)]
+    pub(crate) fn is_sliver(self) -> bool {
+        self == Self::Corners
+    }
+}
+
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
 pub struct TriangleSetup {
     /// near/w with 31 fraction bits; for depth.
     pub(crate) z: Plane,
     /// What perspective takes. Of a small triangle that is held: of u and v what is to be added x², xy and y² times, x and y being the way
-    /// from corner 0's pixel. Of any other that is bent: near/w scaled to 31 bits, as a plane; the size of its step along a row with the
+    /// from the first pixel. Of any other that is bent: near/w scaled to 31 bits, as a plane; the size of its step along a row with the
     /// first bit set; the least that it is at a corner; and what straight lines of v keep from the ends of its range.
     pub(super) bends: [[i32; 3]; 2],
     /// Of a held or bent triangle: how many steps along a row attributes are nearly linear. Where u and v are not read it stays what it was.
@@ -31,10 +55,8 @@ pub struct TriangleSetup {
     pub(crate) is_level: bool,
     /// Whether all colours at the corners are greys, so that one channel stands for three.
     pub(crate) gray: bool,
-    /// Whether planes hold values at corners: a sliver, or of very different distances.
-    pub(crate) sliver: bool,
-    /// Whether it is set up as a [small](super::small) one: no sliver, and its depth never below 1 of 2¹⁶.
-    pub(crate) is_small: bool,
+    /// What its planes hold.
+    pub(crate) planes: Planes,
     /// Of a small one: whether attributes are [held](super::held) in their range. Else planes are of the attributes themselves, as I16F16
     /// with all of the scale.
     pub(crate) is_held: bool,
@@ -48,7 +70,7 @@ pub struct TriangleSetup {
     pub(crate) is_extreme: bool,
     pub(crate) attributes: [Attribute; ATTRIBUTES],
     /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small triangle the uppermost. Of a small one that is neither
-    /// held nor bent they stay what they were: nothing asks for them.
+    /// held nor bent the other two stay what they were: nothing asks for them.
     pub(super) corners: [[i16; 2]; 3],
     /// 1 / (twice the area in 1/256 px²); not of small triangles.
     pub(super) area: Reciprocal,
@@ -63,8 +85,7 @@ impl TriangleSetup {
             corners: [[0; 2]; 3],
             area: Reciprocal { mantissa: 0, zeros: 0 },
             gray: false,
-            sliver: false,
-            is_small: false,
+            planes: Planes::Screen,
             is_held: false,
             is_bent: false,
             straight: false,
@@ -95,6 +116,24 @@ impl TriangleSetup {
     #[inline(always)]
     pub(super) fn set_corners(&mut self, vertices: &[&ScreenVertex; 3]) {
         self.corners = vertices.map(|vertex| [vertex.x.to_bits(), vertex.y.to_bits()]);
+    }
+
+    /// The pixel where planes begin. Of a small triangle that of corner 0, or the one below if its centre lies above the corner; of any
+    /// other pixel (0, 0).
+    #[inline(always)]
+    pub(super) fn first_pixel(&self) -> [i32; 2] {
+        if !self.planes.is_small() {
+            return [0; 2];
+        }
+        let [x, y] = self.corners[0].map(i32::from);
+        [x >> 4, first_center(y)]
+    }
+
+    /// From there to a pixel.
+    #[inline(always)]
+    pub(crate) fn beyond_first(&self, [x, y]: [i32; 2]) -> [i32; 2] {
+        let [first_x, first_y] = self.first_pixel();
+        [x - first_x, y - first_y]
     }
 
     /// Finds out whether all colours are grey, if that is not known.
@@ -131,7 +170,7 @@ impl TriangleSetup {
     /// Whether it is small and may be drawn at one go.
     #[inline]
     pub(crate) fn is_patch(&self) -> bool {
-        self.is_small && !self.is_held
+        self.planes.is_small() && !self.is_held
     }
 
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.
@@ -156,24 +195,25 @@ impl TriangleSetup {
     /// A plane's value at a pixel's centre, and its step to the right. Inside the triangle only.
     #[inline]
     pub(crate) fn at(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
-        if self.sliver {
-            return self.at_in_sliver(plane, x, y);
+        if self.planes != Planes::Screen {
+            return self.at_apart(plane, x, y);
         }
-        (plane.at(x, y), plane.steps[0])
+        (plane.at([x, y]), plane.steps[0])
     }
 
     /// A plane's step to the right.
     #[inline]
     pub(super) fn step(&self, plane: &Plane) -> i32 {
-        if self.sliver { self.step_in_sliver(plane) } else { plane.steps[0] }
+        if self.planes.is_sliver() { self.step_in_sliver(plane) } else { plane.steps[0] }
     }
 
     /// near/w at the first pixel of a span of so many, and its step. One pixel needs no step, which takes a while in a sliver.
     #[inline(always)]
     pub(crate) fn near_w_of(&self, x: i32, y: i32, count: usize) -> (u32, i32) {
-        match count {
-            1 if self.sliver => (self.value_in_sliver(&self.z, x, y), 0),
-            _ => self.at(&self.z, x, y),
+        match self.planes {
+            Planes::Screen => (self.z.at([x, y]), self.z.steps[0]),
+            Planes::Corners if count == 1 => (self.value_in_sliver(&self.z, x, y), 0),
+            _ => self.at_apart(&self.z, x, y),
         }
     }
 
@@ -210,10 +250,13 @@ impl TriangleSetup {
         plane.weighted(&self.weights(x, y))
     }
 
-    /// Likewise, and its step to the right.
+    /// A plane's value and its step to the right, in a sliver or a small triangle.
     #[cold]
     #[inline(never)]
-    pub(crate) fn at_in_sliver(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+    fn at_apart(&self, plane: &Plane, x: i32, y: i32) -> (u32, i32) {
+        if self.planes.is_small() {
+            return (plane.at(self.beyond_first([x, y])), plane.steps[0]);
+        }
         (self.value_in_sliver(plane, x, y), self.step_in_sliver(plane))
     }
 

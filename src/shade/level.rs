@@ -21,7 +21,7 @@ pub(super) fn level(
     let plane = &attribute.plane;
     // 17 bits of 1/q do: the ends are held in the range.
     let reciprocal = (place.reciprocal as u32 + (1 << 13)) >> 14;
-    let value = plane.at(place.x, place.y) as i32;
+    let value = plane.at([place.x, place.y]) as i32;
     // Of three pixels or more, whose values are within ±2³⁰, a step is less than that.
     let mut step = if steps > 0 { plane.steps[0] } else { 0 };
     if q_step != 0 {

@@ -14,7 +14,7 @@ use super::cover::{Cover, Target};
 use super::fill::{Fill, FillRow, tested};
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::{IS_ARMV6M, U1F31};
-use crate::raster::{Rows, Spans, TriangleSetup};
+use crate::raster::{Rows, Spans, TriangleSetup, WIDEST};
 use core::hint::black_box;
 use core::ops::Range;
 
@@ -53,7 +53,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
             if start >= end {
                 continue;
             }
-            let (x, y) = (column + start as i32, row + this as i32);
+            let place = beyond_first([start, this]);
             let mut count = end - start;
             // What is left of a row comes next, as a row of its own: so the loop knows nothing of parts.
             if L::BENDS && count > longest {
@@ -65,13 +65,13 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
             let Some(mut pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                 return;
             };
-            let at = || core::array::from_fn(|i| attributes[i].plane.at(x, y) as i32);
+            let at = || core::array::from_fn(|i| attributes[i].plane.at(place) as i32);
             let step = || if L::PACKS { plain_step } else { fill.step(steps()) };
             if !D::ALWAYS_PASSES {
                 let Some(depth) = all_depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
                     return;
                 };
-                let near_w = (setup.z.at(x, y), setup.z.steps[0]);
+                let near_w = (setup.z.at(place), setup.z.steps[0]);
                 let left = if L::FUSES {
                     let step = step();
                     fill.row_tested::<D>(pixels, depth, near_w, (fill.at(at(), step), step))
@@ -80,7 +80,8 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
                 };
                 if left > 0 {
                     let hidden = [count, left];
-                    (count, n) = skip_hidden::<D>(setup, spans, all_depth, [origin, width], [x, y], hidden);
+                    (count, n) =
+                        skip_hidden::<D>(setup, spans, all_depth, [origin, width], [start, this], hidden);
                     if count == 0 {
                         continue;
                     }
@@ -92,7 +93,7 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
             }
             let at = at();
             let (at, step) = if L::BENDS && setup.is_bent {
-                fill.bent(setup, ([x, y], count as i32 - 1), at, steps())
+                fill.bent(setup, (place, count as i32 - 1), at, steps())
             } else {
                 let step = step();
                 (fill.at(at, step), step)
@@ -102,7 +103,13 @@ impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
     }
 }
 
-/// Leaves of a row what follows its hidden pixels. Of a run of so many pixels from (x, y) on the last `left` were not tested, but for the
+/// From a triangle's first pixel, where planes begin, to a column and a row of its table.
+#[inline(always)]
+fn beyond_first([column, row]: [usize; 2]) -> [i32; 2] {
+    [column as i32 - WIDEST as i32, row as i32]
+}
+
+/// Leaves of a row what follows its hidden pixels. Of a run of so many pixels from a column and a row of the table on the last `left` were not tested, but for the
 /// first of them, which is hidden. Returns how many are visible before that, and the end of the rows that are still to be drawn.
 ///
 /// It finds all anew, so that nothing is kept for it. A format is asked once to test and store for each pixel of a triangle, as one that
@@ -114,22 +121,21 @@ fn skip_hidden<D: DepthFormat>(
     spans: &mut Spans,
     depth: &mut [D::Word],
     [origin, width]: [usize; 2],
-    [x, y]: [i32; 2],
+    [column, row]: [usize; 2],
     [count, left]: [usize; 2],
 ) -> (usize, usize) {
     let visible = count - left;
-    let x = x + visible as i32;
+    let column = column + visible;
+    let (x, y) = (i32::from(spans.column) + column as i32, i32::from(spans.row) + row as i32);
     let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(x as usize);
     let mut hidden = 1;
     for stored in depth.iter_mut().skip(first + 1).take(left - 1) {
-        let near_w = U1F31::from_bits(setup.z.at(x + hidden, y));
+        let near_w = U1F31::from_bits(setup.z.at(beyond_first([column + hidden, row])));
         if D::test(stored, near_w) {
             break;
         }
         D::test_and_store_small(stored, near_w);
         hidden += 1;
     }
-    let next =
-        spans.leave((y - i32::from(spans.row)) as usize, (x + hidden - i32::from(spans.column)) as usize);
-    (visible, next)
+    (visible, spans.leave(row, column + hidden))
 }

@@ -88,7 +88,7 @@ impl<'a> Perspective<'a> {
     /// The way of all rows of a triangle.
     #[inline(never)]
     fn way_of(setup: &TriangleSetup, units: &mut Units) -> fn(&mut Self, i32, i32, u32) -> Way {
-        if setup.is_small {
+        if setup.planes.is_small() {
             return Self::small;
         }
         if setup.straight {
@@ -102,7 +102,7 @@ impl<'a> Perspective<'a> {
             Self::near_horizon
         } else if setup.is_level {
             Self::level
-        } else if setup.sliver {
+        } else if setup.planes.is_sliver() {
             Self::bent_in_sliver
         } else {
             Self::bent
@@ -111,8 +111,8 @@ impl<'a> Perspective<'a> {
 
     /// q's mantissa at a pixel, 2³¹ … 2³² − 1, and its leading zeros. Not of a sliver.
     #[inline(always)]
-    pub(super) fn q_at(&mut self, x: i32, y: i32) -> (u32, u32) {
-        self.mantissa_of(self.setup.q().at(x, y))
+    fn q_at(&mut self, x: i32, y: i32) -> (u32, u32) {
+        self.mantissa_of(self.setup.q().at([x, y]))
     }
 
     /// A pixel and 1/q there. Not of a sliver.
@@ -174,7 +174,7 @@ impl<'a> Perspective<'a> {
         let mut count = pixels.len().div_ceil(2);
         while !pixels.is_empty() {
             let all = core::mem::take(&mut pixels);
-            let near_is_right = !self.setup.is_small && !self.setup.straight && self.setup.q_rises;
+            let near_is_right = !self.setup.planes.is_small() && !self.setup.straight && self.setup.q_rises;
             let way = loop {
                 let skipped = if near_is_right { all.len() - count } else { 0 };
                 let (x, steps) = (x + skipped as i32, count as u32 - 1);
@@ -305,8 +305,9 @@ impl<'a> Perspective<'a> {
         }
         // A slice of a length that is hidden, so that the loop is not unrolled.
         let lines: &mut [Linear] = black_box(&mut self.curve.lines);
+        let place = setup.beyond_first([x, y]);
         for (i, line) in lines.iter_mut().enumerate().take(self.units.count()) {
-            let (at, slope) = setup.along(black_box(i), [x, y], steps);
+            let (at, slope) = setup.along(black_box(i), place, steps);
             *line = Linear { at: at as u32, slope };
         }
         Way::Straight
@@ -337,7 +338,7 @@ impl<'a> Perspective<'a> {
 /// Not inlined on Armv6-M, where it needs all registers.
 #[inline(always)]
 fn set_table(attribute: &Attribute, near: &Place, up: u32, line: &mut Linear) {
-    let value = attribute.plane.at(near.x, near.y) as i32;
+    let value = attribute.plane.at([near.x, near.y]) as i32;
     let above = attribute.divided(value, near.reciprocal, near.zeros);
     let (u, way) = (attribute.least.wrapping_add(above), above.wrapping_sub(attribute.horizon().0));
     // Cut towards zero.
