@@ -24,7 +24,7 @@ use crate::math::Pose;
 use crate::num::{I4F12, I12F4};
 use crate::raster::{Needs, Rows, Runs, Span, TriangleSetup, WIDEST};
 use crate::scene::{Mesh, Projection, Vertex, Viewport};
-use crate::shade::{Cover, Layers, Material, Run, Shader, Target, Textured, Traits};
+use crate::shade::{Cover, Layers, Material, Memory, Run, Shader, Target, Textured, Traits};
 use core::ops::Range;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
@@ -153,12 +153,7 @@ where
             }
             // Of no height, and its first column that of the span.
             let mut of_row = Target::<F, NoDepth> {
-                rows: Rows::Short(all.only(row)),
-                window: window.clone(),
-                origin: (start as usize).wrapping_neg(),
-                width: 0,
-                pixels: &mut run[..],
-                depth: &mut [],
+                memory: Memory::of_row(Rows::Short(all.only(row)), window.clone(), start, &mut run[..]),
                 layers: &Layers::OPAQUE,
                 fog: None,
             };

@@ -9,7 +9,7 @@ use crate::geometry::{
     Clipped, Count, Cull, Oriented, RangeError, ScreenVertex, VertexCache, area, position,
 };
 use crate::raster::{Needs, Rows, Runs, TriangleSetup};
-use crate::shade::{Cover, InFog, Look, Surface, Target};
+use crate::shade::{Cover, InFog, Look, Memory, Surface, Target};
 
 /// Draws one triangle that is on the screen already: the door for callers with their own vertices.
 ///
@@ -78,12 +78,14 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
             needs,
             setup: TriangleSetup::new(),
             target: Target {
-                rows: Rows::NONE,
-                window,
-                origin: 0usize.wrapping_sub(top * width),
-                width,
-                pixels: band.pixels,
-                depth: band.depth,
+                memory: Memory {
+                    rows: Rows::NONE,
+                    window,
+                    origin: 0usize.wrapping_sub(top * width),
+                    width,
+                    pixels: band.pixels,
+                    depth: band.depth,
+                },
                 layers: &look.layers,
                 fog,
             },
@@ -101,7 +103,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
         window: Window,
     ) {
         (self.look, self.target.layers) = (look, &look.layers);
-        (self.target.fog, self.target.window) = (fog, window);
+        (self.target.fog, self.target.memory.window) = (fog, window);
         self.needs = look.needs(kind, fog.is_some());
         self.setup.forget_longest();
     }
@@ -124,7 +126,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     #[inline]
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
         let Self { look, needs, setup, target } = self;
-        let is_seen = setup.prepare(&mut target.rows, triangle, &target.window, needs);
+        let is_seen = setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs);
         if is_seen {
             look.paint(Cover { setup, target });
         }
@@ -135,12 +137,12 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     #[cold]
     #[inline(never)]
     pub(crate) fn draw_folded(&mut self, polygon: &[ScreenVertex], cull: Cull) {
-        let mut runs = Runs::new(polygon, &self.target.window);
+        let mut runs = Runs::new(polygon, &self.target.memory.window);
         while let Some((run, corners)) = runs.next(polygon) {
-            self.target.window = run;
+            self.target.memory.window = run;
             self.draw(corners, cull);
         }
-        self.target.window = runs.window();
+        self.target.memory.window = runs.window();
     }
 
     /// Goes on to the next run of the folded polygon in a mesh's cache, and to a window that is just that. Where there is none, the
@@ -156,20 +158,20 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     ) {
         let polygon = cache.polygon();
         let mut is_first = runs.is_none();
-        let found = runs.get_or_insert_with(|| Runs::new(polygon, &self.target.window));
+        let found = runs.get_or_insert_with(|| Runs::new(polygon, &self.target.memory.window));
         while let Some((run, corners)) = found.next(polygon) {
             if core::mem::take(&mut is_first) {
                 stats.count(|stats| &mut stats.drawn);
             }
             if !cull.leaves_out(area(corners.map(position))) {
-                self.target.window = run;
+                self.target.memory.window = run;
                 return cache.set_piece(found.number());
             }
         }
         if is_first {
             stats.count(|stats| &mut stats.out_of_sight);
         }
-        self.target.window = found.window();
+        self.target.memory.window = found.window();
         (*runs, cache.clipped) = (None, Clipped::None);
     }
 }

@@ -4,6 +4,7 @@
 //! - Out: whether the surface is visible; if so its depth is stored.
 //! - Assumes: near/w is 1 at the near plane and less beyond it, so greater is nearer.
 
+use super::format::OfWords;
 use crate::num::U1F31;
 
 /// How depth is stored, and which of two surfaces is visible: a test, and a store for what was drawn.
@@ -52,6 +53,13 @@ pub trait DepthFormat: 'static {
     fn test_and_store_small(stored: &mut Self::Word, near_w: U1F31) -> bool {
         Self::test_and_store(stored, near_w)
     }
+
+    /// What is made of this format's words, if it is [`Depth16`]: as [`PixelFormat::in_rgb565`](crate::PixelFormat::in_rgb565).
+    #[doc(hidden)]
+    #[inline]
+    fn in_depth16<T: OfWords>(_of: T::Of<Self::Word>) -> Option<T::Of<u16>> {
+        None
+    }
 }
 
 /// 16-bit depth: near/w · 2¹⁶ rounded down, but at least 1; 0 where nothing was drawn. A pixel is drawn if it is strictly
@@ -91,6 +99,11 @@ impl DepthFormat for Depth16 {
             *stored = depth as u16;
         }
         nearer
+    }
+
+    #[inline]
+    fn in_depth16<T: OfWords>(of: T::Of<u16>) -> Option<T::Of<u16>> {
+        Some(of)
     }
 }
 

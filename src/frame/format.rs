@@ -11,6 +11,21 @@ use core::marker::PhantomData;
 use embedded_graphics::pixelcolor::{PixelColor, Rgb565, Rgb888, raw::RawU16};
 use embedded_graphics::prelude::RawData;
 
+/// What is made of words of any type, such as a slice of them. A format whose words are those of a known one hands it back as made of
+/// these.
+#[doc(hidden)]
+pub trait OfWords {
+    /// Of this type of word.
+    type Of<W: 'static>;
+}
+
+/// A slice of words, to be written.
+pub(crate) struct SliceOf<'a>(PhantomData<&'a ()>);
+
+impl<'a> OfWords for SliceOf<'a> {
+    type Of<W: 'static> = &'a mut [W];
+}
+
 /// How a colour is stored in memory.
 ///
 /// A colour type that is its own format is stored as a word in the machine's byte order, or as three bytes in the order of the
@@ -75,12 +90,11 @@ pub trait PixelFormat: 'static {
     /// triangles may be off by this; ¼ pixel is the bound of all others.
     const COLOR_STEP: u8 = 1;
 
-    /// The same words, if they are those of [`Rgb565`] on this machine: then loops that are compiled with this crate write them,
-    /// however the program is optimised.
+    /// What is made of this format's words, if they are those of [`Rgb565`] on this machine: then loops that are compiled with this crate
+    /// write them, however the program is optimised.
     #[doc(hidden)]
     #[inline]
-    #[must_use]
-    fn as_rgb565(_words: &mut [Self::Word]) -> Option<&mut [u16]> {
+    fn in_rgb565<T: OfWords>(_of: T::Of<Self::Word>) -> Option<T::Of<u16>> {
         None
     }
 
@@ -167,8 +181,8 @@ impl PixelFormat for Rgb565 {
     const COLOR_STEP: u8 = 4;
 
     #[inline]
-    fn as_rgb565(words: &mut [u16]) -> Option<&mut [u16]> {
-        Some(words)
+    fn in_rgb565<T: OfWords>(of: T::Of<u16>) -> Option<T::Of<u16>> {
+        Some(of)
     }
 
     const KEEPS: bool = true;

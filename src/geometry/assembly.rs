@@ -12,7 +12,7 @@ use super::cut::{MOST_CORNERS, Upper};
 use super::fan::piece;
 use super::orient::{Cull, Oriented, area, position};
 use super::screen::ScreenVertex;
-use super::stats::Count;
+use super::stats::{Count, Stats};
 use super::vertex_colors::{VertexColors, dim};
 use super::whole::Placing;
 use crate::num::I16F16;
@@ -152,14 +152,34 @@ impl Assembler<'_> {
     /// The next triangle that is not culled; `None` at the end, or where [one is clipped](VertexCache::clipped). Of that, whoever asks
     /// says piece by piece what is [next](VertexCache::set_piece).
     ///
-    /// This loop is as far as culled triangles get, more than half of those of a closed mesh. A vertex that only culled triangles have is
-    /// transformed, but never gets attributes.
-    #[inline(never)]
+    /// By functions without type parameters, which are compiled with this crate, at its level of optimisation and not at that of the
+    /// program.
+    #[inline]
     pub(crate) fn next<'c>(
         &self,
         cache: &'c mut VertexCache<'_>,
         stats: &mut impl Count,
     ) -> Option<Oriented<'c>> {
+        match stats.stats() {
+            Some(stats) => self.next_counted(cache, stats),
+            None => self.next_uncounted(cache),
+        }
+    }
+
+    #[inline(never)]
+    fn next_counted<'c>(&self, cache: &'c mut VertexCache<'_>, stats: &mut Stats) -> Option<Oriented<'c>> {
+        self.find_next(cache, stats)
+    }
+
+    #[inline(never)]
+    fn next_uncounted<'c>(&self, cache: &'c mut VertexCache<'_>) -> Option<Oriented<'c>> {
+        self.find_next(cache, &mut ())
+    }
+
+    /// This loop is as far as culled triangles get, more than half of those of a closed mesh. A vertex that only culled triangles have is
+    /// transformed, but never gets attributes.
+    #[inline(always)]
+    fn find_next<'c>(&self, cache: &'c mut VertexCache<'_>, stats: &mut impl Count) -> Option<Oriented<'c>> {
         if cache.clipped != Clipped::None {
             return self.piece(cache);
         }

@@ -38,11 +38,19 @@ pub struct Stats {
 /// Where a draw counts: in [`Stats`], or nowhere at no cost.
 pub trait Count {
     fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32);
+
+    /// Itself, if it counts.
+    fn stats(&mut self) -> Option<&mut Stats>;
 }
 
 impl Count for () {
     #[inline]
     fn count(&mut self, _: impl FnOnce(&mut Stats) -> &mut u32) {}
+
+    #[inline]
+    fn stats(&mut self) -> Option<&mut Stats> {
+        None
+    }
 }
 
 impl Count for Stats {
@@ -50,5 +58,10 @@ impl Count for Stats {
     fn count(&mut self, what: impl FnOnce(&mut Stats) -> &mut u32) {
         let counter = what(self);
         *counter = counter.saturating_add(1);
+    }
+
+    #[inline]
+    fn stats(&mut self) -> Option<&mut Stats> {
+        Some(self)
     }
 }

@@ -8,7 +8,7 @@
 //! the span. So a test and a shader are never in one loop, and neither takes registers from the other. (Small triangles are
 //! tested and shaded in one loop: see `shade::patch`.)
 
-use crate::frame::DepthFormat;
+use crate::frame::{Depth16, DepthFormat, SliceOf};
 use crate::num::U1F31;
 use core::ops::Range;
 
@@ -20,7 +20,23 @@ pub(crate) fn first_visible<D: DepthFormat, const STORES: bool>(
     (near_w, step): (u32, i32),
 ) -> Option<usize> {
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
-    (near_w.min(last) >> 15 != 0).then(|| passing(depth, near_w, step, small::<D, STORES>))
+    (near_w.min(last) >> 15 != 0).then(|| passing_small::<D, STORES>(depth, near_w, step))
+}
+
+/// [`passing`] where near/w is 2⁻¹⁶ or more.
+#[inline]
+fn passing_small<D: DepthFormat, const STORES: bool>(depth: &mut [D::Word], near_w: u32, step: i32) -> usize {
+    match D::in_depth16::<SliceOf<'_>>(depth) {
+        Some(depth) if STORES => passing_depth16(depth, near_w, step),
+        _ => passing_apart(depth, near_w, step, small::<D, STORES>),
+    }
+}
+
+/// As [`passing`], stored. Without type parameters, so that it is compiled with this crate, at its level of optimisation and not at that of
+/// the program.
+#[inline(never)]
+fn passing_depth16(depth: &mut [u16], near_w: u32, step: i32) -> usize {
+    passing(depth, near_w, step, Depth16::test_and_store_small)
 }
 
 /// The test where near/w is 2⁻¹⁶ or more.
@@ -40,7 +56,9 @@ pub(crate) fn visible<D: DepthFormat, const STORES: bool>(
     let last = near_w.wrapping_add_signed(step.wrapping_mul(depth.len() as i32 - 1));
     // near/w is linear, so the least of it is at an end. From 2⁻¹⁶ on (bit 15) the format's shorter test does.
     let [start, end] = if near_w.min(last) >> 15 != 0 {
-        first_run(depth, near_w, step, small::<D, STORES>, passing)
+        first_run(depth, near_w, step, small::<D, STORES>, |depth, near_w, step, _| {
+            passing_small::<D, STORES>(depth, near_w, step)
+        })
     } else {
         first_run_far_away::<D, STORES>(depth, near_w, step)
     };
@@ -85,10 +103,15 @@ fn first_run<W, T: Fn(&mut W, U1F31) -> bool>(
     [start, (start + 1 + passed).min(depth.len())]
 }
 
-/// How many pixels pass before the first that fails. Out of line on Armv6-M, where it needs all registers: 8 cycles per pixel
-/// instead of 14.
+/// [`passing`], out of line on Armv6-M, where it needs all registers: 8 cycles per pixel instead of 14.
 #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn passing_apart<W>(depth: &mut [W], near_w: u32, step: i32, test: impl Fn(&mut W, U1F31) -> bool) -> usize {
+    passing(depth, near_w, step, test)
+}
+
+/// How many pixels pass before the first that fails.
+#[inline(always)]
 fn passing<W>(depth: &mut [W], mut near_w: u32, step: i32, test: impl Fn(&mut W, U1F31) -> bool) -> usize {
     let mut passes = |stored: &mut W, step: i32| {
         let passes = test(stored, U1F31::from_bits(near_w));

@@ -13,8 +13,8 @@ use crate::geometry::Inputs;
 impl InputCode {
     const NONE: Self = Self {
         inputs: Inputs::None,
-        small: TriangleSetup::set_small::<false>,
-        any: TriangleSetup::set::<false>,
+        small: TriangleSetup::set_small_depth,
+        any: TriangleSetup::set_depth,
         uv: None,
         small_color: None,
     };
@@ -22,8 +22,7 @@ impl InputCode {
     const COLOR: Self =
         Self { inputs: Inputs::Color, small_color: Some(TriangleSetup::set_small_colors), ..Self::SOME };
     const UV_COLOR: Self = Self { inputs: Inputs::UvColor, uv: Some(UvCode::ALL), ..Self::COLOR };
-    const SOME: Self =
-        Self { small: TriangleSetup::set_small::<true>, any: TriangleSetup::set::<true>, ..Self::NONE };
+    const SOME: Self = Self { small: TriangleSetup::set_small, any: TriangleSetup::set, ..Self::NONE };
 
     /// The code for these inputs.
     #[inline(always)]

@@ -61,12 +61,21 @@ use crate::math::recip::Reciprocal;
 use crate::num::{normalise, shift_round_short, wide};
 
 impl TriangleSetup {
-    /// Sets the plane of depth of any triangle, and those of attributes if any is read:
-    /// [`InputCode::any`](super::needs::InputCode).
-    ///
-    /// What is long is called from here, one after another, so that it is not on the stack together.
+    /// Sets the plane of depth of any triangle, and those of attributes: [`InputCode::any`](super::needs::InputCode).
     #[inline(never)]
-    pub(super) fn set<const READS: bool>(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
+    pub(super) fn set(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
+        self.set_if::<true>(vertices, area, needs);
+    }
+
+    /// Sets the plane of depth alone.
+    #[inline(never)]
+    pub(super) fn set_depth(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
+        self.set_if::<false>(vertices, area, needs);
+    }
+
+    /// What is long is called from here, one after another, so that it is not on the stack together.
+    #[inline(always)]
+    fn set_if<const READS: bool>(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) {
         let vertices = &nearest_first(*vertices);
         self.set_corners(vertices);
         (self.planes, self.leans, self.straight) = (Planes::Screen, false, true);

@@ -51,9 +51,26 @@ use super::triangle::{Planes, STRAIGHT, TriangleSetup};
 use crate::geometry::{ScreenVertex, position};
 
 impl TriangleSetup {
-    /// Sets the plane of depth, and those of attributes if any is read, of a triangle: [`InputCode::small`](super::needs::InputCode).
+    /// Sets the plane of depth, and those of attributes, of a triangle: [`InputCode::small`](super::needs::InputCode). As the next one
+    /// without type parameters, so that it is compiled with this crate, at its level of optimisation and not at that of the program.
     #[inline(never)]
-    pub(super) fn set_small<const READS: bool>(
+    pub(super) fn set_small(&mut self, vertices: &[&ScreenVertex; 3], area: u32, needs: &Needs) -> bool {
+        self.set_small_if::<true>(vertices, area, needs)
+    }
+
+    /// Sets the plane of depth alone.
+    #[inline(never)]
+    pub(super) fn set_small_depth(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        area: u32,
+        needs: &Needs,
+    ) -> bool {
+        self.set_small_if::<false>(vertices, area, needs)
+    }
+
+    #[inline(always)]
+    fn set_small_if<const READS: bool>(
         &mut self,
         vertices: &[&ScreenVertex; 3],
         area: u32,

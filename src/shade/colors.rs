@@ -4,15 +4,18 @@
 //! - Out: words.
 //! - Assumes: channels stay within 0 … 255.996 at every pixel.
 
-use super::channels::Channels;
+use super::channels::{Channels, Gray, RedBlueGreen};
 use super::curve::{Curve, Ts};
 use super::fill::{Fill, FillRow, draw_row, draw_row_tested, some_of};
 use super::inverses::ONE_LOG2;
+use super::memory::Memory;
 use super::units::Units;
-use crate::frame::{DepthFormat, PixelFormat};
+use crate::frame::{Depth16, DepthFormat, PixelFormat};
 use crate::num::IS_ARMV6M;
+use crate::raster::TriangleSetup;
 use core::hint::black_box;
 use core::marker::PhantomData;
+use embedded_graphics::pixelcolor::Rgb565;
 
 /// `M` channels: one for greys, else three.
 pub(crate) struct Colors<const M: usize, F, C>(PhantomData<(F, C)>);
@@ -98,6 +101,19 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F,
     }
 
     #[inline]
+    fn draw_in_rgb565<G: PixelFormat<Word = F::Word>>(
+        &self,
+        setup: &TriangleSetup,
+        memory: &mut Memory<'_, u16, u16>,
+    ) -> bool {
+        match M {
+            1 => draw_gray_in_rgb565(setup, memory),
+            _ => draw_rgb_in_rgb565(setup, memory),
+        }
+        true
+    }
+
+    #[inline]
     fn row(&self, pixels: &mut [F::Word], at: C, step: C) {
         draw_row(pixels, at, step, |at| at.word::<F>());
     }
@@ -114,4 +130,14 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> FillRow<M> for Colors<M, F,
     ) -> usize {
         draw_row_tested::<_, D, _>(pixels, depth, near_w, along, |at| at.word::<F>())
     }
+}
+
+#[inline(never)]
+fn draw_gray_in_rgb565(setup: &TriangleSetup, memory: &mut Memory<'_, u16, u16>) {
+    memory.draw_small::<1, Depth16, _>(setup, &Colors::<1, Rgb565, Gray>::NEW);
+}
+
+#[inline(never)]
+fn draw_rgb_in_rgb565(setup: &TriangleSetup, memory: &mut Memory<'_, u16, u16>) {
+    memory.draw_small::<3, Depth16, _>(setup, &Colors::<3, Rgb565, RedBlueGreen>::NEW);
 }

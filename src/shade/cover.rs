@@ -10,8 +10,9 @@
 
 use super::fill::Fill;
 use super::fog::Fogging;
-use crate::frame::{DepthFormat, PixelFormat, Window};
-use crate::raster::{Rows, TriangleSetup};
+use super::memory::Memory;
+use crate::frame::{DepthFormat, PixelFormat};
+use crate::raster::TriangleSetup;
 
 /// A triangle, and where it is drawn to. Two references, which are passed in registers.
 pub(crate) struct Cover<'a, 'b, F: PixelFormat, D: DepthFormat> {
@@ -19,16 +20,9 @@ pub(crate) struct Cover<'a, 'b, F: PixelFormat, D: DepthFormat> {
     pub(crate) target: &'a mut Target<'b, F, D>,
 }
 
-/// Where triangles are drawn to, one after another: the rows of the one that is set up, within a window of a band's memory.
+/// Where triangles are drawn to, one after another, and what is done with their colours there.
 pub(crate) struct Target<'a, F: PixelFormat, D: DepthFormat> {
-    pub(crate) rows: Rows,
-    pub(crate) window: Window,
-    /// The index of column 0 of row 0 among `pixels`, which wraps as it may lie before them. A row further it is `width` more.
-    pub(crate) origin: usize,
-    pub(crate) width: usize,
-    pub(crate) pixels: &'a mut [F::Word],
-    /// Empty if it is never tested.
-    pub(crate) depth: &'a mut [D::Word],
+    pub(crate) memory: Memory<'a, F::Word, D::Word>,
     pub(crate) layers: &'a Layers<F, D>,
     pub(crate) fog: Option<&'a InFog<'a, F, D>>,
 }

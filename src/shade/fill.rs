@@ -9,9 +9,10 @@
 //! `dyn Fill`. So a program has one copy of these loops, and of each fill that a surface of it names.
 
 use super::curve::{Curve, distance};
+use super::memory::Memory;
 use super::quality::Quality;
 use super::units::{Form, Units};
-use crate::frame::DepthFormat;
+use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::U1F31;
 use crate::raster::{ATTRIBUTES, TriangleSetup};
 use core::hint::black_box;
@@ -69,6 +70,18 @@ pub trait FillRow<const N: usize> {
         }
         let step = self.step(step);
         (self.at(at, step), step)
+    }
+
+    /// Draws a small triangle in [`Rgb565`](embedded_graphics::pixelcolor::Rgb565), which `F` is, with [`Depth16`](crate::Depth16), by a
+    /// function without type parameters: that is compiled with this crate, at its level of optimisation and not at that of the program.
+    /// False if there is none.
+    #[inline]
+    fn draw_in_rgb565<F: PixelFormat<Word = Self::Word>>(
+        &self,
+        _setup: &TriangleSetup,
+        _memory: &mut Memory<'_, u16, u16>,
+    ) -> bool {
+        false
     }
 
     /// At most so many pixels side by side.
@@ -245,39 +258,5 @@ impl<const N: usize, Q, W, C: Fn([i32; N]) -> W> FillRow<N> for Each<N, Q, W, C>
     #[inline]
     fn row(&self, pixels: &mut [W], at: [i32; N], step: [i32; N]) {
         draw_row(pixels, at, step, |at| (self.0)(at));
-    }
-}
-
-/// One word everywhere.
-pub(crate) struct Even<W>(pub(crate) W);
-
-impl<W: Copy> Fill<W> for Even<W> {
-    fn units(&self) -> Units {
-        Units::general(0, false)
-    }
-
-    fn straight(&self, pixels: &mut [W], _: &Curve) {
-        pixels.fill(self.0);
-    }
-
-    fn table(&self, pixels: &mut [W], _: &Curve) {
-        pixels.fill(self.0);
-    }
-}
-
-impl<W: Copy> FillRow<0> for Even<W> {
-    type Word = W;
-    type At = ();
-    type Step = ();
-
-    #[inline]
-    fn at(&self, _: [i32; 0], (): ()) {}
-
-    #[inline]
-    fn step(&self, _: [i32; 0]) {}
-
-    #[inline]
-    fn row(&self, pixels: &mut [W], (): (), (): ()) {
-        draw_row(pixels, (), (), |()| self.0);
     }
 }

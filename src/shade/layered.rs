@@ -16,6 +16,7 @@
 
 use super::cover::{Cover, Layers, Target};
 use super::fill::Fill;
+use super::memory::Memory;
 use super::perspective::Perspective;
 use crate::frame::{BAYER, DepthFormat, PixelFormat};
 use crate::num::U1F31;
@@ -102,7 +103,8 @@ pub(super) fn draw<F: PixelFormat, D: DepthFormat>(
     colors: &mut dyn Colors<F::Word>,
 ) {
     let Cover { setup, target } = cover;
-    let Target { rows, window, origin, width, pixels, depth, layers, fog } = target;
+    let Target { memory, layers, fog } = target;
+    let Memory { rows, window, origin, width, pixels, depth } = memory;
     let (origin, width, fog) = (*origin, *width, *fog);
     rows.each(window, |y, start, end| {
         let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);

@@ -4,19 +4,21 @@
 //! - Out: words.
 //! - Assumes: u and v are as for [`Texels`], and light as for [`Colors`](super::colors::Colors).
 
-use super::channels::{Channels, lit};
+use super::channels::{Channels, Gray, RedBlueGreen, lit};
 use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::Light;
+use super::memory::Memory;
 use super::packed::{bent, draw_texels, draw_texels_alone, integer_bits, place_of, step_of};
 use super::texels::Texels;
 use super::units::Units;
-use crate::frame::PixelFormat;
+use crate::frame::{Depth16, PixelFormat};
 use crate::num::IS_ARMV6M;
 use crate::raster::TriangleSetup;
 use crate::scene::Texture;
 use core::hint::black_box;
 use core::marker::PhantomData;
+use embedded_graphics::pixelcolor::Rgb565;
 
 /// Texels times `M` channels of light.
 pub(crate) struct LitTexels<'a, const M: usize, F, C> {
@@ -61,7 +63,7 @@ impl<const M: usize, F: PixelFormat, C: Channels<M>> Fill<F::Word> for LitTexels
 }
 
 macro_rules! fill_row_of_lit_texels {
-    ($n:literal, $m:literal) => {
+    ($n:literal, $m:literal, $draw_in_rgb565:ident) => {
         impl<F: PixelFormat, C: Channels<$m>> FillRow<$n> for LitTexels<'_, $m, F, C> {
             type Word = F::Word;
             type At = ([i32; 2], C);
@@ -87,6 +89,16 @@ macro_rules! fill_row_of_lit_texels {
             ) -> (([i32; 2], C), ([i32; 2], C)) {
                 let (at, step) = bent(self.texture, self.is_packed, setup, along);
                 ((at, C::place(light)), (step, C::step(light_step)))
+            }
+
+            #[inline]
+            fn draw_in_rgb565<G: PixelFormat<Word = F::Word>>(
+                &self,
+                setup: &TriangleSetup,
+                memory: &mut Memory<'_, u16, u16>,
+            ) -> bool {
+                $draw_in_rgb565(self.texture, self.scale_log2, setup, memory);
+                true
             }
 
             #[inline]
@@ -124,5 +136,29 @@ fn light_row<const M: usize, F: PixelFormat, C: Channels<M>>(pixels: &mut [F::Wo
     }
 }
 
-fill_row_of_lit_texels!(3, 1);
-fill_row_of_lit_texels!(5, 3);
+fill_row_of_lit_texels!(3, 1, draw_gray_in_rgb565);
+fill_row_of_lit_texels!(5, 3, draw_rgb_in_rgb565);
+
+#[inline(never)]
+fn draw_gray_in_rgb565(
+    texture: &Texture<'_>,
+    scale_log2: u32,
+    setup: &TriangleSetup,
+    memory: &mut Memory<'_, u16, u16>,
+) {
+    let texture = if IS_ARMV6M { texture } else { black_box(texture) };
+    let texels = LitTexels::<1, Rgb565, Gray>::new(texture, scale_log2);
+    memory.draw_small::<3, Depth16, _>(setup, &texels);
+}
+
+#[inline(never)]
+fn draw_rgb_in_rgb565(
+    texture: &Texture<'_>,
+    scale_log2: u32,
+    setup: &TriangleSetup,
+    memory: &mut Memory<'_, u16, u16>,
+) {
+    let texture = if IS_ARMV6M { texture } else { black_box(texture) };
+    let texels = LitTexels::<3, Rgb565, RedBlueGreen>::new(texture, scale_log2);
+    memory.draw_small::<5, Depth16, _>(setup, &texels);
+}

@@ -40,6 +40,7 @@ use core::hint::black_box;
 use embedded_graphics::pixelcolor::Rgb565;
 
 /// What the loops read, whatever the format.
+#[derive(Clone, Copy)]
 pub(crate) struct Loops<'a> {
     pub(super) texture: &'a Texture<'a>,
     pub(super) is_packed: bool,

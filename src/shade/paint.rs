@@ -6,7 +6,8 @@
 
 use super::border::uv_bits;
 use super::cover::Cover;
-use super::fill::{Even, Fill, FillRow};
+use super::even::Even;
+use super::fill::{Fill, FillRow};
 use super::layered::draw_some;
 use super::opaque;
 use super::quality::Quality;

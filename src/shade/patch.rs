@@ -10,8 +10,9 @@
 //!
 //! All that belongs to a row is a product with its number: nothing is carried from row to row.
 
-use super::cover::{Cover, Target};
-use super::fill::{Fill, FillRow, tested};
+use super::cover::Cover;
+use super::fill::{FillRow, tested};
+use super::memory::Memory;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::num::{IS_ARMV6M, U1F31};
 use crate::raster::{Rows, Spans, TriangleSetup, WIDEST};
@@ -19,15 +20,45 @@ use core::hint::black_box;
 use core::ops::Range;
 
 impl<F: PixelFormat, D: DepthFormat> Cover<'_, '_, F, D> {
-    #[inline(never)]
+    /// Draws a small triangle: by a function that is compiled with this crate, if there is one.
+    #[inline]
     pub(super) fn draw_small<const N: usize, L>(self, fill: &L)
     where
-        L: Fill<F::Word> + FillRow<N, Word = F::Word>,
+        L: FillRow<N, Word = F::Word>,
     {
         let Self { setup, target } = self;
+        let is_drawn =
+            target.memory.in_rgb565::<F, D>().is_some_and(|memory| fill.draw_in_rgb565::<F>(setup, memory));
+        if !is_drawn {
+            draw_apart::<N, D, L>(setup, &mut target.memory, fill);
+        }
+    }
+}
+
+/// Draws a small triangle in any formats.
+#[inline(never)]
+fn draw_apart<const N: usize, D, L>(
+    setup: &TriangleSetup,
+    memory: &mut Memory<'_, L::Word, D::Word>,
+    fill: &L,
+) where
+    D: DepthFormat,
+    L: FillRow<N>,
+{
+    memory.draw_small::<N, D, L>(setup, fill);
+}
+
+impl<P, Z> Memory<'_, P, Z> {
+    /// Draws a small triangle.
+    #[inline(always)]
+    pub(super) fn draw_small<const N: usize, D, L>(&mut self, setup: &TriangleSetup, fill: &L)
+    where
+        D: DepthFormat<Word = Z>,
+        L: FillRow<N, Word = P>,
+    {
         // Hidden on Armv6-M: what rows read of it would be kept, in registers that there are not.
         let setup = if IS_ARMV6M { black_box(setup) } else { setup };
-        let Target { rows, origin, width, pixels, depth, .. } = target;
+        let Self { rows, origin, width, pixels, depth, .. } = self;
         let width = *width;
         let (Rows::Short(spans), Some(attributes)) = (rows, setup.attributes.first_chunk::<N>()) else {
             return;

@@ -11,12 +11,14 @@ use super::curve::Curve;
 use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
+use super::memory::Memory;
 use super::packed::{bent, downs, draw_texels_alone, integer_bits, place_of, step_of};
 use super::units::Units;
-use crate::frame::PixelFormat;
+use crate::frame::{Depth16, PixelFormat, SliceOf};
 use crate::raster::TriangleSetup;
 use crate::scene::Texture;
 use core::marker::PhantomData;
+use embedded_graphics::pixelcolor::Rgb565;
 
 /// Texels of a texture that repeats.
 pub(crate) struct Texels<'a, F> {
@@ -59,7 +61,7 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     #[inline]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
-        match F::as_rgb565(pixels) {
+        match F::in_rgb565::<SliceOf<'_>>(pixels) {
             Some(pixels) => straight_in_rgb565(&self.loops, pixels, line),
             None => self.loops.straight::<F>(pixels, line),
         }
@@ -67,7 +69,7 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     #[inline]
     fn table(&self, pixels: &mut [F::Word], curve: &Curve) {
-        match F::as_rgb565(pixels) {
+        match F::in_rgb565::<SliceOf<'_>>(pixels) {
             Some(pixels) => table_in_rgb565(&self.loops, pixels, curve),
             None => self.loops.table::<F>(pixels, curve),
         }
@@ -75,7 +77,7 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     #[inline]
     fn chords(&self, pixels: &mut [F::Word], curve: &Curve) {
-        match F::as_rgb565(pixels) {
+        match F::in_rgb565::<SliceOf<'_>>(pixels) {
             Some(pixels) => chords_in_rgb565(&self.loops, pixels, curve),
             None => self.loops.chords::<F>(pixels, curve),
         }
@@ -109,9 +111,25 @@ impl<F: PixelFormat> FillRow<2> for Texels<'_, F> {
     }
 
     #[inline]
+    fn draw_in_rgb565<G: PixelFormat<Word = F::Word>>(
+        &self,
+        setup: &TriangleSetup,
+        memory: &mut Memory<'_, u16, u16>,
+    ) -> bool {
+        draw_small_in_rgb565(&self.loops, setup, memory);
+        true
+    }
+
+    #[inline]
     fn row(&self, pixels: &mut [F::Word], at: [i32; 2], step: [i32; 2]) {
         draw_texels_alone::<F>(self.texture, self.is_packed, pixels, at, step);
     }
+}
+
+#[inline(never)]
+fn draw_small_in_rgb565(loops: &Loops<'_>, setup: &TriangleSetup, memory: &mut Memory<'_, u16, u16>) {
+    let texels = Texels::<Rgb565> { loops: *loops, format: PhantomData };
+    memory.draw_small::<2, Depth16, _>(setup, &texels);
 }
 
 #[cfg(test)]
@@ -121,7 +139,6 @@ pub(super) mod tests {
     use super::super::passes::{at_once, leave_apart, second_pass};
     use super::*;
     use crate::frame::BigEndian;
-    use embedded_graphics::pixelcolor::Rgb565;
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;

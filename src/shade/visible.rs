@@ -6,7 +6,8 @@
 //!
 //! Each row of a triangle is a span of pixels, and what is visible of a span is one run or several.
 
-use super::cover::{Cover, Target};
+use super::cover::Cover;
+use super::memory::Memory;
 use crate::frame::{DepthFormat, PixelFormat};
 use crate::raster::{first_visible, visible};
 
@@ -30,7 +31,7 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
     mut runs: impl DrawRun<F::Word>,
 ) {
     let Cover { setup, target } = cover;
-    let Target { rows, window, origin, width, pixels, depth, .. } = target;
+    let Memory { rows, window, origin, width, pixels, depth } = &mut target.memory;
     let (origin, width) = (*origin, *width);
     // So that both are known to be as long.
     let length = if D::ALWAYS_PASSES { pixels.len() } else { pixels.len().min(depth.len()) };
