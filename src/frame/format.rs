@@ -26,6 +26,13 @@ impl<'a> OfWords for SliceOf<'a> {
     type Of<W: 'static> = &'a mut [W];
 }
 
+/// A single word.
+pub(crate) struct Single;
+
+impl OfWords for Single {
+    type Of<W: 'static> = W;
+}
+
 /// How a colour is stored in memory.
 ///
 /// A colour type that is its own format is stored as a word in the machine's byte order, or as three bytes in the order of the

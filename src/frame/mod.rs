@@ -23,7 +23,7 @@ pub(crate) use bayer::BAYER;
 pub use blend::BlendFormat;
 pub use depth::{Depth16, DepthFormat, NoDepth};
 pub use format::{BigEndian, PixelFormat};
-pub(crate) use format::{OfWords, SliceOf};
+pub(crate) use format::{OfWords, Single, SliceOf};
 pub use pack::PackError;
 pub use quantize::{Quantized, QuantizedColors};
 pub use threshold::{Quantize, Threshold};

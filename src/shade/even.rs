@@ -8,7 +8,7 @@ use super::curve::Curve;
 use super::fill::{Fill, FillRow, draw_row};
 use super::memory::Memory;
 use super::units::Units;
-use crate::frame::{Depth16, OfWords, PixelFormat};
+use crate::frame::{Depth16, PixelFormat, Single};
 use crate::raster::TriangleSetup;
 
 /// One word everywhere.
@@ -45,7 +45,7 @@ impl<W: Copy + 'static> FillRow<0> for Even<W> {
         setup: &TriangleSetup,
         memory: &mut Memory<'_, u16, u16>,
     ) -> bool {
-        F::in_rgb565::<OneWord>(self.0).is_some_and(|word| {
+        F::in_rgb565::<Single>(self.0).is_some_and(|word| {
             draw_evenly_in_rgb565(setup, memory, word);
             true
         })
@@ -55,13 +55,6 @@ impl<W: Copy + 'static> FillRow<0> for Even<W> {
     fn row(&self, pixels: &mut [W], (): (), (): ()) {
         draw_row(pixels, (), (), |()| self.0);
     }
-}
-
-/// A word.
-struct OneWord;
-
-impl OfWords for OneWord {
-    type Of<W: 'static> = W;
 }
 
 #[inline(never)]
