@@ -88,9 +88,11 @@ fn paint<B: Border, F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recipe: &
     if is_repeated_alike::<F, Q, P>(recipe, &pixels) {
         return Textured::paint::<F, Q, P>(recipe, pixels);
     }
-    match bordered::<B, F, Q, P>(recipe, &pixels) {
-        Some(fill) => pixels.fill_rows(&fill),
-        None => pixels.shade_rows(|[u, v]| F::rgb565(B::texel(texture, u >> 16, v >> 16))),
+    let uv_bits = pixels.uv_bits();
+    if !Q::EVERY_PIXEL && Bordered::<F, B>::fits(uv_bits) {
+        pixels.fill_rows(&Bordered::<F, B>::new(texture, recipe.scale_log2.into(), uv_bits));
+    } else {
+        pixels.shade_rows(|[u, v]| F::rgb565(B::texel(texture, u >> 16, v >> 16)));
     }
 }
 
@@ -100,27 +102,19 @@ fn paint_lit<B: Border, F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(recip
     if is_repeated_alike::<F, Q, P>(recipe, &pixels) {
         return LitTextured::paint::<F, Q, P>(recipe, pixels);
     }
-    match (bordered::<B, F, Q, P>(recipe, &pixels), pixels.is_gray()) {
-        (Some(fill), true) => pixels.fill_rows(&LitBordered::<1, F, B, Gray>::new(fill)),
-        (Some(fill), false) => pixels.fill_rows(&LitBordered::<3, F, B, RedBlueGreen>::new(fill)),
-        (None, true) => pixels
+    let (uv_bits, scale_log2) = (pixels.uv_bits(), recipe.scale_log2.into());
+    match (!Q::EVERY_PIXEL && Bordered::<F, B>::fits(uv_bits), pixels.is_gray()) {
+        (true, true) => {
+            pixels.fill_rows(&LitBordered::<1, F, B, Gray>::new(texture, scale_log2, uv_bits));
+        }
+        (true, false) => {
+            pixels.fill_rows(&LitBordered::<3, F, B, RedBlueGreen>::new(texture, scale_log2, uv_bits));
+        }
+        (false, true) => pixels
             .shade_rows(|[u, v, light]| lit::<F>(B::texel(texture, u >> 16, v >> 16), whole([light; 3]))),
-        (None, false) => pixels.shade_rows(|[u, v, light @ ..]: [i32; 5]| {
+        (false, false) => pixels.shade_rows(|[u, v, light @ ..]: [i32; 5]| {
             lit::<F>(B::texel(texture, u >> 16, v >> 16), whole(light))
         }),
-    }
-}
-
-/// The fill that splits runs at borders, unless each pixel is to be asked.
-#[inline]
-fn bordered<'a, B: Border, F: PixelFormat, Q: Quality, P: Pixels<F::Word, Q>>(
-    recipe: &'a Recipe<'_>,
-    pixels: &P,
-) -> Option<Bordered<'a, F, B>> {
-    if Q::EVERY_PIXEL {
-        None
-    } else {
-        Bordered::new(&recipe.texture, recipe.scale_log2.into(), pixels.uv_bits())
     }
 }
 

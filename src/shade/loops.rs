@@ -33,7 +33,6 @@ use super::packed::{downs, lines_of, packed_from, packed_step, shifted, sized, s
 use super::passes::{at_once, leave_apart, leave_ts, second_pass};
 use crate::frame::PixelFormat;
 use crate::num::IS_ARMV6M;
-use crate::raster::ATTRIBUTES;
 use crate::scene::Texture;
 use bytemuck::must_cast_ref;
 use core::hint::black_box;
@@ -61,8 +60,8 @@ enum Known<'a> {
 }
 
 #[inline(never)]
-pub(super) fn straight_in_rgb565(loops: &Loops<'_>, pixels: &mut [u16], line: &Curve) {
-    loops.straight::<Rgb565>(pixels, line);
+pub(super) fn straight_in_rgb565(loops: &Loops<'_>, pixels: &mut [u16], lines: &[Linear; 2]) {
+    loops.straight::<Rgb565>(pixels, lines);
 }
 
 #[inline(never)]
@@ -136,11 +135,11 @@ const BY_CONSTANTS: bool = !(IS_ARMV6M || cfg!(target_arch = "riscv32"));
 #[inline(always)]
 fn line_in_blocks<F: PixelFormat>(
     mut pixels: &mut [F::Word],
-    line: &Curve,
+    lines: &[Linear; 2],
     ([a, b], block_log2): ([u32; 2], u32),
     draw: impl Fn(&mut [F::Word], u32, u32),
 ) {
-    let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
+    let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }] = *lines;
     let (mut u, mut v) = (u as i32, v as i32);
     let log2 = block_log2 & 31;
     let mut step = packed_step([turned(shifted(u_step, a)), shifted(v_step, b)]);
@@ -186,18 +185,18 @@ impl Loops<'_> {
 
     /// Along a straight line of packed coordinates.
     #[inline(always)]
-    fn line_packed<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
+    fn line_packed<F: PixelFormat>(&self, pixels: &mut [F::Word], lines: &[Linear; 2]) {
         if let Known::Of64x64(texels) = self.known
             && BY_CONSTANTS
         {
             let texel = squared::<6, _>(self.texture, texels);
             let log2 = ([6; 2], 6);
-            return line_in_blocks::<F>(pixels, line, log2, |block, packed, step| {
+            return line_in_blocks::<F>(pixels, lines, log2, |block, packed, step| {
                 unrolled::<F>(block, packed, step, &texel);
             });
         }
         let log2 = (self.texture.log2(), self.block_log2.into());
-        line_in_blocks::<F>(pixels, line, log2, |block, packed, step| match self.known {
+        line_in_blocks::<F>(pixels, lines, log2, |block, packed, step| match self.known {
             Known::Of64x64(texels) | Known::Of4096(texels) => {
                 unrolled::<F>(block, packed, step, &sized(self.texture, texels));
             }
@@ -207,8 +206,8 @@ impl Loops<'_> {
 
     /// Along a straight line of coordinates that are not packed.
     #[inline(never)]
-    fn line_unpacked<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
-        let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }, ..] = line.lines;
+    fn line_unpacked<F: PixelFormat>(&self, pixels: &mut [F::Word], lines: &[Linear; 2]) {
+        let [Linear { at: u, slope: u_step }, Linear { at: v, slope: v_step }] = *lines;
         let (texture, mut at) = (*self.texture, [u as i32, v as i32]);
         for pixel in pixels {
             *pixel = F::rgb565(texture.fetch_repeat(at[0] >> 16, at[1] >> 16));
@@ -253,11 +252,11 @@ impl Loops<'_> {
         }
     }
 
-    /// Takes away from a straight line's v what is lent to it where u falls, for u that does not repeat.
-    pub(super) fn lend_nothing(&self, [u, v, ..]: &mut [Linear; ATTRIBUTES]) {
-        if self.is_packed && u.slope < 0 {
-            v.at = v.at.wrapping_sub(1 << self.texture.log2()[1]);
-        }
+    /// A straight line's v without what is lent to it where u falls, for u that does not repeat.
+    #[inline(always)]
+    pub(super) fn lending_nothing(&self, u: Linear, v: Linear) -> Linear {
+        let lent = if self.is_packed && u.slope < 0 { 1 << self.texture.log2()[1] } else { 0 };
+        Linear { at: v.at.wrapping_sub(lent), ..v }
     }
 
     /// With 1/w at every pixel, of 2^`A` × 2^`A` texels.
@@ -334,11 +333,11 @@ impl Loops<'_> {
     }
 
     #[inline]
-    pub(super) fn straight<F: PixelFormat>(&self, pixels: &mut [F::Word], line: &Curve) {
+    pub(super) fn straight<F: PixelFormat>(&self, pixels: &mut [F::Word], lines: &[Linear; 2]) {
         if !self.is_packed {
-            return self.line_unpacked::<F>(pixels, line);
+            return self.line_unpacked::<F>(pixels, lines);
         }
-        self.line_packed::<F>(pixels, line);
+        self.line_packed::<F>(pixels, lines);
     }
 
     #[inline]

@@ -8,6 +8,7 @@ mod bordered;
 mod channels;
 mod colors;
 mod cover;
+mod crossings;
 mod curve;
 mod cut_out;
 mod even;

@@ -7,7 +7,7 @@
 //!
 //! The [loops](super::loops) are chosen here: for [`Rgb565`](embedded_graphics::pixelcolor::Rgb565) those that are compiled with this crate.
 
-use super::curve::Curve;
+use super::curve::{Curve, Linear};
 use super::fill::{Fill, FillRow};
 use super::light::FillTexels;
 use super::loops::{Loops, chords_in_rgb565, straight_in_rgb565, table_in_rgb565};
@@ -39,6 +39,15 @@ impl<'a, F: PixelFormat> Texels<'a, F> {
     pub(crate) fn new(texture: &'a Texture<'a>, scale_log2: u32) -> Self {
         Self { loops: Loops::new(texture, scale_log2), format: PhantomData }
     }
+
+    /// Any number of pixels, along straight lines in I16F16.
+    #[inline]
+    pub(super) fn lines(&self, pixels: &mut [F::Word], lines: &[Linear; 2]) {
+        match F::in_rgb565::<SliceOf<'_>>(pixels) {
+            Some(pixels) => straight_in_rgb565(&self.loops, pixels, lines),
+            None => self.loops.straight::<F>(pixels, lines),
+        }
+    }
 }
 
 impl<F: PixelFormat> FillTexels<F> for Texels<'_, F> {
@@ -61,9 +70,8 @@ impl<F: PixelFormat> Fill<F::Word> for Texels<'_, F> {
 
     #[inline]
     fn straight(&self, pixels: &mut [F::Word], line: &Curve) {
-        match F::in_rgb565::<SliceOf<'_>>(pixels) {
-            Some(pixels) => straight_in_rgb565(&self.loops, pixels, line),
-            None => self.loops.straight::<F>(pixels, line),
+        if let Some(lines) = line.lines.first_chunk() {
+            self.lines(pixels, lines);
         }
     }
 
@@ -134,7 +142,6 @@ fn draw_small_in_rgb565(loops: &Loops<'_>, setup: &TriangleSetup, memory: &mut M
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::curve::Linear;
     use super::super::packed::lines_of;
     use super::super::passes::{at_once, leave_apart, second_pass};
     use super::*;
