@@ -5,33 +5,33 @@
 //!   quotient and remainder (`div_rem`), or a quotient of small integers (`quotient_of_10_bits`).
 //! - Assumes: what each function says of its divisor. Where 0 is allowed it counts as 1.
 //!
-//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1, which is x = m/2³¹ in the unit of 1. The 9 bits after its
-//! leading one select one of 512 intervals. The table has y, the reciprocal of the interval's middle, and one Newton–Raphson step
-//! makes of it the reciprocal of x: with δ = x·y − 1, what is too much,
+//! A divisor is normalised by its leading zeros to `m` = 2³¹ … 2³² − 1, which is x = m/2³¹ in the unit of 1. The 8 bits after its
+//! leading one select one of 256 intervals. The table has y, the reciprocal of the interval's beginning, and a series makes of it
+//! the reciprocal of x: with δ = x·y − 1, what is too much,
 //!
 //! ```text
-//! 1/x ≈ y · (1 − δ)      too low by δ² of itself, as (1 + δ) · (1 − δ) = 1 − δ²
+//! 1/x = y / (1 + δ) ≈ y · (1 − δ + δ²)      too high by δ³ of itself, as (1 + δ) · (1 − δ + δ²) = 1 + δ³
 //! ```
 //!
-//! δ is within 2⁻¹⁰/x, half an interval, and 2⁻¹⁷ from y's rounding: so δ² is below 2⁻²⁰. Half of that, 2⁻²¹, is added everywhere.
-//! A table of so many reciprocals of 16 bits takes half the flash of one in which lines are drawn from entry to entry, and no
-//! longer to look up: δ is the low bits of a product, since all above them are those of 1.
+//! δ is below 2⁻⁸, an interval, and may be −2⁻¹⁵ from y's rounding: so δ³ is below 2⁻²⁴, and what is cut off on the way, 2⁻²² together,
+//! is more. A table for the first two terms alone would have 512 entries. δ is the low bits of a product, since all above them are
+//! those of 1.
 //!
-//! One more such step squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
+//! A Newton–Raphson step, y · (1 − δ), squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
 use crate::num::{IS_ARMV6M, mul_high, normalise, normalised, wide_inlined};
 
-const INTERVALS: usize = 512;
+const INTERVALS: usize = 256;
 
-/// 2¹⁶/x for x = 1 + (i + ½)/512, rounded.
+/// 2¹⁶/x for x = 1 + i/256, rounded. The first one is 2 less, so that it fits, and no reciprocal is 2³¹.
 static TABLE: [u16; INTERVALS] = table();
 
 const fn table() -> [u16; INTERVALS] {
-    let mut table = [0; INTERVALS];
-    let mut i = 0;
+    let mut table = [u16::MAX - 1; INTERVALS];
+    let mut i = 1;
     while i < INTERVALS {
-        let n = (INTERVALS + i) as u32 * 2 + 1; // x = n/1024
-        table[i] = (((1 << 26) + n / 2) / n) as u16;
+        let n = (INTERVALS + i) as u32; // x = n/256
+        table[i] = (((1 << 24) + n / 2) / n) as u16;
         i += 1;
     }
     table
@@ -99,12 +99,11 @@ impl Reciprocal {
 /// 2⁶²/m for m = 2³¹ … 2³² − 1: less than 2³¹ and more than 2³⁰. The relative error is below 2⁻²⁰.
 #[inline]
 pub(crate) fn looked_up(m: u32) -> u32 {
-    let y = u32::from(TABLE[(m >> 22) as usize & (INTERVALS - 1)]);
-    // x has 24 fraction bits here, y 16: what is left of the product is δ with 40, within ±1.01 · 2³⁰.
-    let excess = (m >> 7).wrapping_mul(y) as i32;
-    // 2⁻²¹ in units of 2⁻²⁴, of which 1 comes by itself where bits are cut off.
-    let less = ((excess >> 16) - 7) * y as i32;
-    (y << 15).wrapping_add_signed(-(less >> 9))
+    let y = u32::from(TABLE[(m >> 23) as usize & (INTERVALS - 1)]);
+    // x has 23 fraction bits here, y 16: what is left of the product is δ with 39, within ±2³¹.
+    let excess = ((m >> 8).wrapping_mul(y) as i32) >> 16;
+    let less = (excess - ((excess * excess) >> 23)) * y as i32;
+    (y << 15).wrapping_add_signed(-(less >> 8))
 }
 
 /// The exact quotient and remainder, from a quotient that is off by at most a few.
@@ -149,8 +148,8 @@ pub(crate) fn quotient_of_10_bits(numerator: i32, divisor: i32) -> i32 {
         let (divisor, zeros) = (divisor as u32, divisor.leading_zeros());
         (m, down) = (divisor << zeros, 31 - zeros);
     }
-    let y = u32::from(TABLE[usize::from((m >> 23) as u8) * 2]);
-    // As in `looked_up`: δ with 32 fraction bits, at the beginning of the interval. The lowest 8 are 0.
+    let y = u32::from(TABLE[usize::from((m >> 23) as u8)]);
+    // As in `looked_up`, but at the beginning of the interval, where δ is y's rounding alone. It has 32 fraction bits; the lowest 8 are 0.
     let excess = (m >> 15).wrapping_mul(y) as i32;
     let less = if IS_ARMV6M { ((excess >> 8) * y as i32) >> 19 } else { mul_high(excess, y << 5) };
     let reciprocal = (y << 5) as i32 - less;
@@ -171,7 +170,7 @@ mod tests {
 
     #[test]
     fn coarse_is_within_2_pow_minus_20_for_every_input_of_its_table_stage() {
-        // The table stage takes 24 bits after the leading one: these are all its inputs.
+        // The table stage takes 23 bits after the leading one: these are all its inputs, each twice.
         let (mut low, mut high) = (0f64, 0f64);
         for d in 1u32 << 24..1 << 25 {
             let error = relative_error(Reciprocal::coarse(d), d);
