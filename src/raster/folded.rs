@@ -19,8 +19,13 @@ use core::ops::Range;
 #[cold]
 #[inline(never)]
 pub(crate) fn rows_of_folded(polygon: &[ScreenVertex], window: &Window) -> Range<i32> {
-    let ends = polygon.iter().map(|vertex| i32::from(vertex.y.to_bits()));
-    let (low, high) = ends.fold((i32::MAX, i32::MIN), |(low, high), at| (low.min(at), high.max(at)));
+    let (mut low, mut high) = (i32::MAX, i32::MIN);
+    for vertex in polygon {
+        let at = i32::from(vertex.y.to_bits());
+        (low, high) = (low.min(at), high.max(at));
+        // Not unrolled.
+        black_box(());
+    }
     first_center(low).max(window.rows.start)..first_center(high).min(window.rows.end)
 }
 
@@ -137,8 +142,10 @@ fn set_sides(sides: &mut [[i32; 2]], polygon: &[ScreenVertex], row: i32) {
 #[inline(never)]
 fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
     let row_of = |vertex: &ScreenVertex| first_center(vertex.y.to_bits().into());
-    for i in 0..3 {
-        let [from, to] = [corners[i], corners[if i < 2 { i + 1 } else { 0 }]];
+    let [a, b, c] = corners;
+    // A slice of a length that is hidden, so that the loop is not unrolled.
+    for edge in black_box(&[[a, b], [b, c], [c, a]][..]) {
+        let [from, to] = *edge;
         let [top, bottom] = if upwards { [to, from] } else { [from, to] };
         if row_of(top) <= row && row < row_of(bottom) {
             return centers_left(top, bottom, row);

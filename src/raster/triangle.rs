@@ -174,7 +174,8 @@ impl TriangleSetup {
     }
 
     /// The first and the last column or row of it within the screen, or as much of it as the screen has.
-    #[inline]
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     pub(super) fn extent(&self, axis: usize) -> [i32; 2] {
         let [a, b, c] = self.corners.map(|corner| i32::from(corner[axis] >> 4));
         let (first, last) = (a.min(b).min(c), a.max(b).max(c));

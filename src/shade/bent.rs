@@ -188,8 +188,7 @@ impl Perspective<'_> {
     #[cold]
     #[inline(never)]
     fn set_ends(&mut self, place: &Place, weights: Option<&[u32; 2]>, is_near: bool) {
-        let all = self.setup.attributes.iter().zip(&mut self.curve.lines);
-        for (attribute, line) in all.take(self.units.count()) {
+        for (_, attribute, line) in self.each() {
             let above = at(attribute, place, weights);
             if is_near {
                 line.at = above as u32;
