@@ -19,78 +19,76 @@ use core::hint::black_box;
 /// The most steps in the general forms: so that n/w fits 16 bits, and the table is off by 63/1024 pixel at most.
 const MOST_GENERAL: u32 = 63;
 
+/// An end of a part of a row of an extreme triangle: 1/q there, and in a sliver by how much corners 1 and 2 count.
+struct End {
+    place: Place,
+    weights: [u32; 2],
+}
+
+/// Which end of a part that is; both if it is one pixel.
+#[derive(Clone, Copy)]
+enum Which {
+    Near,
+    Far,
+    Both,
+}
+
 impl Perspective<'_> {
-    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on. Not of a sliver.
+    /// Sets the curve of a part of a row, `steps` + 1 pixels from (x, y) on. Not of an extreme triangle.
     #[inline(never)]
     pub(super) fn bent(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let near = &self.near(x, y, steps);
         let Some((way, (size, down))) = self.start(near, steps) else {
             return Way::None;
         };
-        if self.setup.is_extreme && way != Way::Straight {
-            // What is straight is held in the range by itself.
-            self.set_by_far_end(x, y, steps, way);
-        } else {
-            let is_table = way == Way::Table && self.units.form == Form::Modular;
-            self.set_lines(steps, way, |attribute, _| {
-                let above = attribute.at(near);
-                let (from_horizon, log2) = from_horizon(attribute, above);
-                let log2 = log2 as i32;
-                if is_table {
-                    (above, from_horizon, log2 - ONE_LOG2 as i32)
-                } else {
-                    (above, mul_high(from_horizon, size << 1), log2 - 1 - down)
-                }
-            });
-        }
+        let is_table = way == Way::Table && self.units.form == Form::Modular;
+        self.set_lines(steps, way, |attribute, _| {
+            let above = attribute.at(near);
+            let (from_horizon, log2) = from_horizon(attribute, above);
+            let log2 = log2 as i32;
+            if is_table {
+                (above, from_horizon, log2 - ONE_LOG2 as i32)
+            } else {
+                (above, mul_high(from_horizon, size << 1), log2 - 1 - down)
+            }
+        });
         way
     }
 
-    /// A sliver has no planes: its values at both ends come from weights.
+    /// Likewise, where planes may leave the range: slopes come from both ends.
     #[cold]
     #[inline(never)]
-    pub(super) fn bent_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
-        if self.units.in_sliver.is_some() {
-            if steps > 0 {
-                return Way::None;
-            }
-            self.resolve_in_sliver(x, y);
-            return Way::Straight;
-        }
-        let [to_near, to_far] = if self.setup.q_rises { [steps as i32, 0] } else { [0, steps as i32] };
-        let (mut place, mut weights) = (Place { x, y, reciprocal: 0, zeros: 0 }, [0; 2]);
-        self.place_in_sliver(x + to_near, &mut place, &mut weights);
-        let Some((way, _)) = self.start(&place, steps) else {
+    pub(super) fn extreme(&mut self, x: i32, y: i32, steps: u32) -> Way {
+        let near = if self.setup.q_rises { x + steps as i32 } else { x };
+        let mut end = End { place: Place { x: near, y, reciprocal: 0, zeros: 0 }, weights: [0; 2] };
+        self.arrive(&mut end);
+        let Some((way, _)) = self.start(&end.place, steps) else {
             return Way::None;
         };
-        if steps == 0 {
-            self.set_pixel(&place, Some(&weights));
-            return way;
+        self.set_ends(&end, if steps == 0 { Which::Both } else { Which::Near });
+        if steps > 0 {
+            end.place.x += if self.setup.q_rises { -(steps as i32) } else { steps as i32 };
+            self.arrive(&mut end);
+            self.set_ends(&end, Which::Far);
+            self.set_by_ends(steps, way);
         }
-        self.set_ends(&place, Some(&weights), true);
-        self.place_in_sliver(x + to_far, &mut place, &mut weights);
-        self.set_ends(&place, Some(&weights), false);
-        self.set_by_ends(steps, way);
         way
     }
 
     /// One pixel of a sliver in the exact form.
+    #[cold]
     #[inline(never)]
-    fn resolve_in_sliver(&mut self, x: i32, y: i32) {
+    pub(super) fn exact_in_sliver(&mut self, x: i32, y: i32, steps: u32) -> Way {
         let Some(resolve) = self.units.in_sliver else {
-            return;
+            return Way::None;
         };
+        if steps > 0 {
+            return Way::None;
+        }
         for (setup, attribute, line) in self.each() {
             *line = pixel(attribute, resolve(setup, attribute, x, y));
         }
-    }
-
-    /// Goes to another pixel of the same row of a sliver: 1/q there, and by how much corners 1 and 2 count.
-    #[inline(never)]
-    fn place_in_sliver(&mut self, x: i32, place: &mut Place, weights: &mut [u32; 2]) {
-        *weights = self.setup.weights(x, place.y);
-        let (m, zeros) = self.mantissa_of(self.setup.q().weighted(weights));
-        *place = Place { x, y: place.y, reciprocal: looked_up(m) as i32, zeros };
+        Way::Straight
     }
 
     /// Sets w and n of a part that starts at a place. Returns the way it is drawn, if any, and (size, down): the step of w is
@@ -113,14 +111,6 @@ impl Perspective<'_> {
         match way_of(self.units.form, w_step, steps) {
             Way::None => None,
             way => Some((way, (size, down))),
-        }
-    }
-
-    /// One pixel, which has weights in a sliver.
-    #[inline(never)]
-    fn set_pixel(&mut self, place: &Place, weights: Option<&[u32; 2]>) {
-        for (_, attribute, line) in self.each() {
-            *line = pixel(attribute, at(attribute, place, weights));
         }
     }
 
@@ -171,29 +161,30 @@ impl Perspective<'_> {
         }
     }
 
-    /// Where planes may leave the range: slopes come from both ends.
+    /// Sets what there is at an end of a part, where it is said to be.
     #[cold]
     #[inline(never)]
-    fn set_by_far_end(&mut self, x: i32, y: i32, steps: u32, way: Way) {
-        let (start, end) = (x, x + steps as i32);
-        let [near, far] = if self.setup.q_rises { [end, start] } else { [start, end] };
-        let mut place = self.place(near, y);
-        self.set_ends(&place, None, true);
-        place = self.place(far, y);
-        self.set_ends(&place, None, false);
-        self.set_by_ends(steps, way);
+    fn arrive(&mut self, End { place, weights }: &mut End) {
+        if self.setup.planes.is_sliver() {
+            *weights = self.setup.weights(place.x, place.y);
+        }
+        let (m, zeros) =
+            self.mantissa_of(self.setup.at_or_weighted(&self.setup.q(), [place.x, place.y], weights));
+        (place.reciprocal, place.zeros) = (looked_up(m) as i32, zeros);
     }
 
     /// Leaves in each line how much more than the least there is at one end of a part: as `at` of the near end, as `slope` of the far one.
+    /// If it is both, it is one pixel, and the lines are set.
     #[cold]
     #[inline(never)]
-    fn set_ends(&mut self, place: &Place, weights: Option<&[u32; 2]>, is_near: bool) {
-        for (_, attribute, line) in self.each() {
-            let above = at(attribute, place, weights);
-            if is_near {
-                line.at = above as u32;
-            } else {
-                line.slope = above;
+    fn set_ends(&mut self, End { place, weights }: &End, which: Which) {
+        for (setup, attribute, line) in self.each() {
+            let value = setup.at_or_weighted(&attribute.plane, [place.x, place.y], weights);
+            let above = attribute.divided(value as i32, place.reciprocal, place.zeros);
+            match which {
+                Which::Near => line.at = above as u32,
+                Which::Far => line.slope = above,
+                Which::Both => *line = pixel(attribute, above),
             }
         }
     }
@@ -230,17 +221,6 @@ impl Perspective<'_> {
 fn pixel(attribute: &Attribute, above: i32) -> Linear {
     let u = attribute.least.wrapping_add(above);
     Linear { at: (u << attribute.scale_log2()) as u32, slope: 0 }
-}
-
-/// How much more than the least an attribute is at a pixel: by its planes, or in a sliver by how much corners 1 and 2 count there.
-#[inline(never)]
-fn at(attribute: &Attribute, place: &Place, weights: Option<&[u32; 2]>) -> i32 {
-    match weights {
-        None => attribute.at(place),
-        Some(weights) => {
-            attribute.divided(attribute.plane.weighted(weights) as i32, place.reciprocal, place.zeros)
-        }
-    }
 }
 
 /// A straight way, from how much more than the least there is at its near end, the change over a pixel, I16F16, and what it keeps from the

@@ -102,8 +102,10 @@ impl<'a> Perspective<'a> {
             Self::near_horizon
         } else if setup.is_level {
             Self::level
-        } else if setup.planes.is_sliver() {
-            Self::bent_in_sliver
+        } else if setup.planes.is_sliver() && units.in_sliver.is_some() {
+            Self::exact_in_sliver
+        } else if setup.is_extreme {
+            Self::extreme
         } else {
             Self::bent
         }
@@ -214,7 +216,7 @@ impl<'a> Perspective<'a> {
             // The tangent is off by n²·q′/q pixels. Beyond 1/8 `bent` decides.
             let fall = steps * q_step.unsigned_abs();
             if steps * fall > m >> zeros >> 3 {
-                return self.ask_bent(x, y, steps);
+                return if self.setup.is_extreme { Way::None } else { self.ask_bent(x, y, steps) };
             }
             // Taken as constant, q moves a row by at most 2 · 2047 · n·q′/q pixels, where q is 2³⁰ or more: by 2⁻⁶.
             bends = fall > 1 << 12;
