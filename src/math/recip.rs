@@ -89,7 +89,8 @@ impl Reciprocal {
 
     /// The quotient `numerator / divisor`, rounded down, and the remainder 0 … `divisor` − 1. `self` is the precise
     /// reciprocal of `divisor` (1 … 2²⁴).
-    #[inline]
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     pub(crate) fn div_rem(self, numerator: i32, divisor: i32) -> (i32, i32) {
         let half = mul_high(numerator, self.mantissa as u32);
         corrected((half << 1) >> (31 - self.zeros), numerator, divisor)
