@@ -19,7 +19,7 @@
 //!
 //! A Newton–Raphson step, y · (1 − δ), squares the error: [`Reciprocal::precise`] is good to 2⁻³⁰.
 
-use crate::num::{IS_ARMV6M, mul_high, normalise, normalised, wide_inlined};
+use crate::num::{IS_ARMV6M, mul_high, normalise, wide_inlined};
 
 const INTERVALS: usize = 256;
 
@@ -132,7 +132,7 @@ pub(crate) fn short(m: u32) -> u32 {
 /// counts as 1.
 #[inline]
 pub(crate) fn short_of(divisor: u32) -> (u32, u32) {
-    let (m, zeros) = normalised(divisor.max(1));
+    let (m, zeros) = normalise(divisor.max(1));
     (short(m), zeros)
 }
 

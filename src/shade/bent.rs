@@ -12,7 +12,7 @@ use super::packed::shifted;
 use super::perspective::{NEAR_STEP, Perspective, Way};
 use super::units::Form;
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{IS_ARMV6M, mul_high, mul_high_signed, normalised, wide};
+use crate::num::{IS_ARMV6M, mul_high, mul_high_signed, normalise, wide};
 use crate::raster::{Attribute, Place, TriangleSetup};
 use core::hint::black_box;
 
@@ -245,7 +245,7 @@ fn straight(
 #[inline(never)]
 fn general(form: Form, attribute: &Attribute, above: i32, slope: i32, log2: i32) -> (Linear, u8) {
     let log2 = log2 + attribute.scale_log2() as i32;
-    let (_, zeros) = normalised(slope.unsigned_abs().max(1));
+    let (_, zeros) = normalise(slope.unsigned_abs().max(1));
     let dropped = 17u32.saturating_sub(zeros) as i32;
     let down = fraction_bits(form) as i32 - dropped - log2;
     let slope = scaled(slope, -dropped);
