@@ -139,7 +139,7 @@ impl TriangleSetup {
     /// Finds out whether all colours are grey, if that is not known.
     #[inline]
     pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], is_known: bool) {
-        self.gray = is_known || vertices.iter().all(|vertex| is_gray(vertex.color));
+        self.gray = is_known || are_gray(vertices);
     }
 
     /// near/w scaled to 31 bits; for the division. Of a bent triangle that is not small.
@@ -308,6 +308,12 @@ impl TriangleSetup {
         let [b, c] = attribute.plane.steps;
         attribute.bounded(mul_round::<31>(weights[0], b) + mul_round::<31>(weights[1], c))
     }
+}
+
+/// Whether all colours at the corners are greys.
+#[inline(never)]
+fn are_gray(vertices: &[&ScreenVertex; 3]) -> bool {
+    vertices.iter().all(|vertex| is_gray(vertex.color))
 }
 
 /// By how much the edge functions of corners 1 and 2 change a column, and a row, of 1/16 px.
