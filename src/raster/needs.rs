@@ -15,6 +15,7 @@ use super::triangle::TriangleSetup;
 use crate::geometry::{Inputs, ScreenVertex};
 use crate::num::zeros_of;
 use core::fmt;
+use core::hint::black_box;
 
 /// The functions that set up what a shader reads.
 pub(crate) struct InputCode {
@@ -187,15 +188,26 @@ impl Needs {
         } else {
             5
         };
-        (first..end).all(|i| {
-            let at = match i {
-                0 | 1 => scaling.uv(vertices, i),
-                _ => vertices.map(|vertex| {
-                    vertex.color.get(i - 2).map_or(0, |channel| i32::from(channel.to_bits()) << 8)
-                }),
-            };
-            set(i - first, at, if i < 2 { scaling.rest(i) } else { 0 })
-        })
+        let mut i = first;
+        while i < end {
+            if !set(i - first, values(scaling, vertices, i), if i < 2 { scaling.rest(i) } else { 0 }) {
+                return false;
+            }
+            // Hidden, so that the loop is not unrolled.
+            i = black_box(i) + 1;
+        }
+        true
+    }
+}
+
+/// Input `i` at the corners, I16F16: u, v or a channel.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn values(scaling: &Scaling, vertices: &[&ScreenVertex; 3], i: usize) -> [i32; 3] {
+    match i {
+        0 | 1 => scaling.uv(vertices, i),
+        _ => vertices
+            .map(|vertex| vertex.color.get(i - 2).map_or(0, |channel| i32::from(channel.to_bits()) << 8)),
     }
 }
 
