@@ -80,10 +80,10 @@ impl Reciprocal {
     pub(crate) fn precise_normalised(m: u32, zeros: u32) -> Self {
         let Self { mantissa, zeros } = Self::coarse_normalised(m, zeros);
         let half_m = (m >> 1) as i32;
-        // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| ≤ 2⁴¹, and y += y·r/2⁶¹.
+        // With y the mantissa: r = 2⁶¹ − (m/2)·y, |r| < 2⁴⁰, and y += y·r/2⁶¹, of which 11 bits are left: upper halves of both do.
         let r = (1 << 61) - wide_inlined(half_m, mantissa);
-        let step = (wide_inlined(mantissa, (r >> 20) as i32) + (1 << 40)) >> 41;
-        let mantissa = (mantissa as u32).wrapping_add_signed(step as i32).min(i32::MAX as u32);
+        let step = ((mantissa >> 16) * (r >> 24) as i32 + (1 << 20)) >> 21;
+        let mantissa = (mantissa as u32).wrapping_add_signed(step).min(i32::MAX as u32);
         Self { mantissa: mantissa as i32, zeros }
     }
 
