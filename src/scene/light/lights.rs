@@ -343,12 +343,16 @@ fn limited(light: u32) -> U8F8 {
 /// 128/127 of a direction of the world in mesh space, 30 fraction bits to 14: the rotation's inverse is its transpose.
 #[inline(never)]
 fn turned_back(rotation: &[[I2F14; 3]; 3], direction: [i32; 3]) -> [i16; 3] {
-    array::from_fn(|column| {
-        let sum = dot(rotation.map(|row| row[column].to_bits().into()), direction);
-        // 15 bits; beyond ±1 only if the rotation is none.
-        let component = ((sum + (1 << 28)) >> 29).clamp(-1 << 15, 1 << 15) as i32;
-        ((component * 16513 + (1 << 14)) >> 15) as i16
-    })
+    array::from_fn(|column| turned_back_along(rotation, column, &direction))
+}
+
+/// One component of that. Not inlined: it is there once.
+#[inline(never)]
+fn turned_back_along(rotation: &[[I2F14; 3]; 3], column: usize, direction: &[i32; 3]) -> i16 {
+    let axis = rotation.map(|row| row.get(column).map_or(0, |at| at.to_bits().into()));
+    // 15 bits; beyond ±1 only if the rotation is none.
+    let component = ((dot(axis, *direction) + (1 << 28)) >> 29).clamp(-1 << 15, 1 << 15) as i32;
+    ((component * 16513 + (1 << 14)) >> 15) as i16
 }
 
 #[cfg(test)]

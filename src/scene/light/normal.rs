@@ -142,7 +142,7 @@ fn long_cross(p: [i32; 3], q: [i32; 3]) -> [i32; 3] {
 }
 
 /// As many bits as the largest magnitude has.
-#[inline]
+#[inline(never)]
 pub(super) fn magnitude(vector: [i32; 3]) -> u32 {
     vector.iter().fold(0, |all, component| all | component.unsigned_abs())
 }
