@@ -19,7 +19,7 @@
 use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
 use crate::math::recip::{Reciprocal, looked_up};
-use crate::num::{I12F4, I16F16, U1F31, mul_high_short, mul_round, normalised, wide, zeros_of};
+use crate::num::{I12F4, I16F16, U1F31, mul_high_short, normalised, wide, zeros_of};
 use crate::scene::{Bounds, Projection, Vertex};
 use core::hint::black_box;
 use core::ops::RangeInclusive;
@@ -277,7 +277,7 @@ impl Clip {
             inverse = Inverse { mantissa: 1 << 31, zeros: 31 - self.flat() - finer };
             // Both of 31 bits.
             let depth = (self.far - w) << self.depth_zeros();
-            (mul_round::<30>(depth, self.depth_mantissa) as u32).clamp(1, i32::MAX as u32)
+            (((wide(depth, self.depth_mantissa) + (1 << 29)) >> 30) as u32).clamp(1, i32::MAX as u32)
         } else {
             inverse = Inverse::of(w);
             // 2³⁰ … 2³², of which the upper bits are q: all but as many as w has more than near.
