@@ -68,7 +68,7 @@ where
 fn in_bands<F, D, const N: usize>(
     screen: Size,
     rows: u32,
-    list: &DisplayList<'_, F, D, N>,
+    list: &mut DisplayList<'_, F, D, N>,
     background: &impl Background<F>,
 ) -> (Vec<F::Word>, Vec<D::Word>)
 where
@@ -107,9 +107,9 @@ where
     for_all(name, usual, (screen(), scene(6), 1..70_u32), |(screen, draws, any)| {
         let whole = at_once(screen, &draws, &surfaces, &SKY);
         let mut memory = Memory::new();
-        let list = listed(&mut memory, screen, &draws, &surfaces);
+        let mut list = listed(&mut memory, screen, &draws, &surfaces);
         for rows in [1, 2, 7, 16, any, screen.height] {
-            prop_assert_eq!(&in_bands(screen, rows, &list, &SKY), &whole, "{} rows", rows);
+            prop_assert_eq!(&in_bands(screen, rows, &mut list, &SKY), &whole, "{} rows", rows);
         }
         drawn.set(drawn.get() + list.lengths()[1] as u64);
         Ok(())
@@ -134,9 +134,9 @@ fn a_sorted_list_is_the_same_at_every_height() {
         let mut memory = Memory::new();
         let mut list = listed(&mut memory, screen, &draws, &surfaces);
         list.sort_back_to_front();
-        let whole = in_bands(screen, screen.height, &list, &SKY);
+        let whole = in_bands(screen, screen.height, &mut list, &SKY);
         for rows in [1, 2, 7, 16, any] {
-            prop_assert_eq!(&in_bands(screen, rows, &list, &SKY), &whole, "{} rows", rows);
+            prop_assert_eq!(&in_bands(screen, rows, &mut list, &SKY), &whole, "{} rows", rows);
         }
         Ok(())
     });
@@ -404,7 +404,7 @@ fn a_list_on_static_memory_mixes_surfaces_and_lights_of_one_frame() {
         }
         assert_eq!(list.lengths()[2], 4);
         for rows in [1, 7, 16, 48] {
-            assert!(in_bands(screen, rows, &list, &SKY) == whole, "{rows} rows");
+            assert!(in_bands(screen, rows, &mut list, &SKY) == whole, "{rows} rows");
         }
         pictures.push(whole.0);
     }
@@ -512,7 +512,7 @@ fn sending_only_what_changed_shows_the_same_as_sending_all() {
         let sky = Gradient::new(Rgb888::CSS_SKY_BLUE, Rgb888::CSS_MIDNIGHT_BLUE, screen.height);
         for (draws, number, fails) in frames {
             let mut memory = Memory::new();
-            let list = listed(&mut memory, screen, &draws, &surfaces);
+            let mut list = listed(&mut memory, screen, &draws, &surfaces);
             let name = ["0", "12", "345", "6789"][usize::from(number)];
             let style = MonoTextStyle::new(&FONT_4X6, Rgb565::WHITE);
             let text = Text::new(name, Point::new(2, 8), style);
@@ -597,7 +597,7 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
                 }
             };
             let mut memory = Memory::new();
-            let list = listed(&mut memory, screen, &draws, &surfaces);
+            let mut list = listed(&mut memory, screen, &draws, &surfaces);
             let mut left = fails.unwrap_or(u32::MAX);
             let result = list.render_changed(height, &SKY, &mut bands[band], &mut changes, |area, band| {
                 left = left.checked_sub(1).ok_or(Busy)?;
@@ -610,7 +610,7 @@ fn other_bands_screens_and_marks_leave_nothing_stale() {
                 failed.set(failed.get() + 1);
                 continue;
             }
-            let whole = in_bands(Size::new(width, height), 16, &list, &SKY).0;
+            let whole = in_bands(Size::new(width, height), 16, &mut list, &SKY).0;
             let shown = display.pixels.iter().take(whole.len()).map(|color| color.into_storage());
             prop_assert!(shown.eq(whole), "{} rows of {}", rows[band], height);
         }

@@ -138,7 +138,7 @@ fn with_one_band(screen: Screen, frames: u32, list: &List<'_>, mut bus: Bus) -> 
 }
 
 /// Each band is drawn while the one before is sent.
-fn with_two_bands(screen: Screen, frames: u32, list: &List<'_>, bus: Bus) -> Run {
+fn with_two_bands(screen: Screen, frames: u32, list: &mut List<'_>, bus: Bus) -> Run {
     let clock = bus.clock.clone();
     let start = clock.now();
     let (mut band, mut draws) = (screen.band(), Vec::new());
@@ -200,7 +200,7 @@ fn the_display_shows_what_is_drawn_at_once() {
         let bus = || Bus::new(screen.size(), &clock, cycles_a_byte);
         let send = cycles_a_byte * 2 * screen.words() as u64;
         let one = with_one_band(screen, 2, &list, bus());
-        let two = with_two_bands(screen, 2, &list, bus());
+        let two = with_two_bands(screen, 2, &mut list, bus());
         for run in [&one, &two] {
             prop_assert_eq!(&run.shown, &picture);
         }
@@ -258,7 +258,7 @@ fn torus(list: &mut List<'_>, camera: &Camera, clock: &Clock) {
 }
 
 /// The cycles of so many frames: drawing them, sending them, both with one band, both with two, and the longest that a band took.
-fn times(list: &List<'_>, clock: &Clock, frames: u32, cycles_a_byte: u64) -> [u64; 5] {
+fn times(list: &mut List<'_>, clock: &Clock, frames: u32, cycles_a_byte: u64) -> [u64; 5] {
     let bus = || Bus::new(UPRIGHT.size(), clock, cycles_a_byte);
     let one = with_one_band(UPRIGHT, frames, list, bus());
     let two = with_two_bands(UPRIGHT, frames, list, bus());
@@ -282,7 +282,7 @@ fn frames_take_as_long_as_the_slower_of_drawing_and_sending() {
     // At 125 MHz a bus of 62.5 MHz takes 16 cycles a byte.
     for cycles_a_byte in [8, 16, 19, 40] {
         for frames in [1, 4] {
-            let [draw, send, one, two, longest] = times(&list, &clock, frames, cycles_a_byte);
+            let [draw, send, one, two, longest] = times(&mut list, &clock, frames, cycles_a_byte);
             match cycles_a_byte {
                 8 => assert!(draw > 2 * send, "it is not bound by drawing"),
                 19 => assert!(draw.abs_diff(send) * 50 < draw, "it is not balanced"),
@@ -301,7 +301,7 @@ fn frames_take_as_long_as_the_slower_of_drawing_and_sending() {
     let mut list = List::new(&mut memory);
     torus(&mut list, &camera, &clock);
     for cycles_a_byte in [4, 8, 16] {
-        let [draw, send, one, two, _] = times(&list, &clock, 4, cycles_a_byte);
+        let [draw, send, one, two, _] = times(&mut list, &clock, 4, cycles_a_byte);
         assert_eq!(one, draw + send);
         // Empty bands are quickly drawn and full ones quickly sent: two bands cannot even out more than two.
         let (saved, ideal) = (one - two, draw.min(send));
@@ -382,7 +382,7 @@ fn pixels_are_swapped_and_nothing_else() {
 fn below_the_last_full_band_there_is_a_part_and_then_all_of_it_again() {
     let screen = Screen { width: 6, rows: 4, bands: 1 };
     let mut of_list = Memory::new();
-    let (mut band, list) = (screen.band(), List::new(&mut of_list));
+    let (mut band, mut list) = (screen.band(), List::new(&mut of_list));
     let mut other = memory(24);
     for fails in [false, true] {
         let mut rows = Vec::new();

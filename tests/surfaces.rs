@@ -193,7 +193,12 @@ type Memory = ListMemory<3000, 1500>;
 type List<'a, F, D> = DisplayList<'a, F, D, 16>;
 
 /// Pixels and depths of the whole screen, in bands of some height.
-fn rendered<F, D>(list: &List<'_, F, D>, screen: Size, rows: u32, sky: &Gradient) -> (Vec<u16>, Vec<D::Word>)
+fn rendered<F, D>(
+    list: &mut List<'_, F, D>,
+    screen: Size,
+    rows: u32,
+    sky: &Gradient,
+) -> (Vec<u16>, Vec<D::Word>)
 where
     F: BlendFormat<Word = u16>,
     D: DepthFormat,
@@ -226,9 +231,9 @@ where
             world.draw(layered, screen, &mut list).expect("the list is large");
         }
         count.set(count.get() + list.lengths()[1]);
-        let whole = rendered(&list, screen, screen.height, &world.sky);
+        let whole = rendered(&mut list, screen, screen.height, &world.sky);
         for rows in [1, 3, 16, any] {
-            let parts = rendered(&list, screen, rows, &world.sky);
+            let parts = rendered(&mut list, screen, rows, &world.sky);
             let names: Vec<_> = draws
                 .iter()
                 .map(|layered| &world.surfaces[layered.surface % world.surfaces.len()].0)
@@ -284,7 +289,7 @@ fn a_list_is_drawn_like_draws_at_once_in_its_order() {
         for layered in before.iter().chain([&transparent]).chain(after) {
             world.draw(layered, screen, &mut list).expect("the list is large");
         }
-        let listed = rendered(&list, screen, 16, &world.sky);
+        let listed = rendered(&mut list, screen, 16, &world.sky);
         prop_assert!(listed == (pixels, depth), "{:?} at {}", name(&transparent), place);
         differ.set(differ.get() + 1);
         Ok(())
@@ -334,7 +339,7 @@ fn two_threads_draw_all_surfaces_of_one_list() {
         for layered in &draws {
             world.draw(layered, screen, &mut list).expect("the list is large");
         }
-        let whole = rendered(&list, screen, 48, &world.sky).0;
+        let whole = rendered(&mut list, screen, 48, &world.sky).0;
         let band = |number: u32| {
             let (mut pixels, mut depth) = (vec![0; 60 * 16], vec![0; 60 * 16]);
             let mut band = Band::<Rgb565, Depth16>::new(Size::new(60, 16), &mut pixels, &mut depth)
@@ -377,7 +382,7 @@ fn sending_only_what_changed_shows_all_surfaces() {
                 }
                 Ok::<_, Infallible>(())
             });
-            prop_assert!(shown == rendered(&list, screen, 48, &world.sky).0);
+            prop_assert!(shown == rendered(&mut list, screen, 48, &world.sky).0);
         }
         Ok(())
     });
@@ -569,7 +574,7 @@ fn whatever_is_called_in_between_a_list_keeps_its_order() {
                 }
                 2 => {
                     list.sort_back_to_front();
-                    rendered(&list, screen, 48, &world.sky);
+                    rendered(&mut list, screen, 48, &world.sky);
                 }
                 _ => {}
             }
@@ -583,7 +588,9 @@ fn whatever_is_called_in_between_a_list_keeps_its_order() {
         for layered in &since {
             world.draw(layered, screen, &mut plain).expect("the list is large");
         }
-        prop_assert!(rendered(&list, screen, 16, &world.sky) == rendered(&plain, screen, 48, &world.sky));
+        prop_assert!(
+            rendered(&mut list, screen, 16, &world.sky) == rendered(&mut plain, screen, 48, &world.sky)
+        );
         Ok(())
     });
 }
@@ -646,7 +653,7 @@ fn driven<const V: usize, const T: usize, const N: usize>(
             }
         }
     }
-    let picture = |list: &DisplayList<'_, Rgb565, Depth16, N>| {
+    let picture = |list: &mut DisplayList<'_, Rgb565, Depth16, N>| {
         let (mut pixels, mut depth) = (vec![0; 64 * 16], vec![0; 64 * 16]);
         let mut band =
             Band::<Rgb565, Depth16>::new(Size::new(64, 16), &mut pixels, &mut depth).expect("a band");
@@ -657,7 +664,7 @@ fn driven<const V: usize, const T: usize, const N: usize>(
         });
         all
     };
-    assert_eq!(picture(&list), rendered(&other, screen, 48, &world.sky).0);
+    assert_eq!(picture(&mut list), rendered(&mut other, screen, 48, &world.sky).0);
     full
 }
 

@@ -55,8 +55,8 @@ pub fn draw_triangle<'a, F: PixelFormat, D: DepthFormat>(
 /// The stages from set-up on.
 pub(crate) struct Raster<'a, F: PixelFormat, D: DepthFormat> {
     look: &'a Look<'a, F, D>,
-    needs: Needs,
-    setup: TriangleSetup,
+    pub(super) needs: Needs,
+    pub(super) setup: TriangleSetup,
     target: Target<'a, F, D>,
 }
 
@@ -115,18 +115,23 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
         }
     }
 
-    /// A triangle that is clockwise on the screen.
+    /// A triangle that is clockwise on the screen, and perhaps set up already. False if it has no pixels in the window.
     #[inline]
-    pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3]) {
+    pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3], is_set_up: bool) -> bool {
         let area = area(vertices.map(position)) as u32;
-        self.draw_oriented(&Oriented { vertices, area });
+        self.draw_perhaps_set_up(&Oriented { vertices, area }, is_set_up)
     }
 
     /// A triangle that is not culled. False if it has no pixels in the window.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
+        self.draw_perhaps_set_up(triangle, false)
+    }
+
+    #[inline(always)]
+    fn draw_perhaps_set_up(&mut self, triangle: &Oriented<'_>, is_set_up: bool) -> bool {
         let Self { look, needs, setup, target } = self;
-        let is_seen = setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs);
+        let is_seen = setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs, is_set_up);
         if is_seen {
             look.paint(Cover { setup, target });
         }

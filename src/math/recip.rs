@@ -38,7 +38,8 @@ const fn table() -> [u16; INTERVALS] {
 }
 
 /// 1/d as a mantissa and the leading zeros of d: 1/d = `mantissa` · 2^(`zeros` − 62).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub(crate) struct Reciprocal {
     /// 2³⁰ … 2³¹ − 1.
     pub(crate) mantissa: i32,

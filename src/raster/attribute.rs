@@ -12,7 +12,7 @@ use core::hint::black_box;
 /// (u − u₀)·q, and the way back to u.
 ///
 /// The fields are in the order in which Armv6-M reaches those of u and of v with one register.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Attribute {
     /// (u − u₀)·q in units of 2^(32 − `shift`) · (I16F16 · unit of q); of a sliver in `Exact` u − u₀ in I16F16, and of a straight

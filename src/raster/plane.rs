@@ -8,7 +8,8 @@ use crate::num::mul_round;
 
 /// A linear function on the screen, in integers that wrap. A sliver (see [`setup`](super::setup)) keeps values at its corners
 /// in the same fields.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub(crate) struct Plane {
     /// The value at the centre of the [first pixel](super::triangle::TriangleSetup::first_pixel). In a sliver: at corner 0.
     pub(crate) origin: u32,

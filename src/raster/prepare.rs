@@ -12,8 +12,8 @@ use crate::geometry::Oriented;
 use core::hint::black_box;
 
 impl TriangleSetup {
-    /// Prepares a triangle: its rows, and its planes. One of each serves all triangles of a draw, one after another. False if it has no
-    /// pixels in the window. (True does not mean that it has.)
+    /// Prepares a triangle: its rows, and its planes, unless these `are_set`. One of each serves all triangles of a draw, one after another.
+    /// False if it has no pixels in the window. (True does not mean that it has.)
     ///
     /// What this calls is called from here, one after another, and not from each other: so that what finds the rows is not on the
     /// stack any more where planes are set.
@@ -24,6 +24,7 @@ impl TriangleSetup {
         triangle: &Oriented<'_>,
         window: &Window,
         needs: &Needs,
+        are_set: bool,
     ) -> bool {
         let [a, b, c] = triangle.vertices;
         // Hidden: as selects instead of branches it takes 25 cycles more on a Cortex-M4.
@@ -35,16 +36,19 @@ impl TriangleSetup {
             black_box([c, a, b])
         };
         match rows.start_small(&from_top, window) {
-            Small::Hidden => false,
-            Small::Rows if (needs.code.small)(self, &from_top, triangle.area, needs) => true,
-            other => {
-                let is_large = matches!(other, Small::Not);
-                if is_large && !rows.start_long(&from_top, window) {
-                    return false;
+            Small::Hidden => return false,
+            Small::Rows => {
+                self.set_first_corner(from_top[0]);
+                if are_set || (needs.code.small)(self, &from_top, triangle.area, needs) {
+                    return true;
                 }
-                (needs.code.any)(self, &from_top, triangle.area, needs);
-                true
             }
+            Small::Not if !rows.start_long(&from_top, window) => return false,
+            Small::Not => {}
         }
+        if !are_set {
+            (needs.code.any)(self, &from_top, triangle.area, needs);
+        }
+        true
     }
 }

@@ -79,7 +79,6 @@ impl TriangleSetup {
         let [top @ [x, y], next, last] = vertices.map(position);
         let ([bx, by], [cx, cy]) = ([next[0] - x, next[1] - y], [last[0] - x, last[1] - y]);
         self.planes = Planes::Small;
-        self.corners[0] = [vertices[0].x.to_bits(), vertices[0].y.to_bits()];
         (self.is_held, self.is_bent) = (false, false);
         let (width, height) = ((bx.max(cx).max(0) - bx.min(cx).min(0)) as u32, by.max(cy) as u32);
         // Thick enough: where it is longest, a row or a column is `area` by its height or width long, at least 2 sixteenths. A rise of 2²⁷

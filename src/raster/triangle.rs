@@ -118,6 +118,12 @@ impl TriangleSetup {
         self.corners = vertices.map(|vertex| [vertex.x.to_bits(), vertex.y.to_bits()]);
     }
 
+    /// Sets the first corner alone: for the [first pixel](Self::first_pixel) of a small triangle.
+    #[inline(always)]
+    pub(super) fn set_first_corner(&mut self, vertex: &ScreenVertex) {
+        self.corners[0] = [vertex.x.to_bits(), vertex.y.to_bits()];
+    }
+
     /// The pixel where planes begin. Of a small triangle that of corner 0, or the one below if its centre lies above the corner; of any
     /// other pixel (0, 0).
     #[inline(always)]

@@ -100,7 +100,7 @@ pub fn record(list: &mut List<'_>) -> Result<(), CapacityError> {
 ///
 /// The first of `show`; the rest is not drawn then.
 pub fn render<E>(
-    list: &List<'_>,
+    list: &mut List<'_>,
     band: &mut Deep<'_>,
     mut show: impl FnMut(&Deep<'_>) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -146,7 +146,7 @@ mod tests {
             let mut band =
                 Deep::new(Size::new(SIZE.width, rows), &mut pixels, &mut depth).expect("the slices hold it");
             let mut shown = Vec::new();
-            let Ok(()) = render(&list, &mut band, |band| {
+            let Ok(()) = render(&mut list, &mut band, |band| {
                 shown.extend_from_slice(band.pixels());
                 Ok::<_, Infallible>(())
             });

@@ -5,9 +5,10 @@
 //! - Assumes: the bands of one frame share its width.
 
 use super::capacity::CapacityError;
-use super::entries::{ListTriangle, ListVertex, ListView};
+use super::entries::{ListTriangle, ListVertex, ListView, ROWS_LOG2};
 use super::extent::Extent;
 use super::index::{Index, Touching, steps_of, touch};
+use super::kept::Kept;
 use super::memory::ListMemory;
 use super::order::Order;
 use super::record::record;
@@ -139,7 +140,7 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     pub fn render(&self, top: u32, band: &mut Band<'_, F, D>) {
         band.move_to(top);
         let view = self.view();
-        render(&view, self.order.index(), &self.draws, band);
+        render(&view, self.order.index(), &self.draws, band, &mut Kept::new(&mut []));
     }
 
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
@@ -150,24 +151,30 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     ///
     /// The first of `flush`; the rest is not drawn then.
     pub fn render_bands<'b, E>(
-        &self,
+        &mut self,
         height: u32,
         background: &impl Background<F>,
         band: &mut Band<'b, F, D>,
         mut flush: impl FnMut(Rectangle, &mut Band<'b, F, D>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let mut top = 0;
+        let length = self.vertices.len();
+        let _ = self.vertices.resize_default(self.vertices.capacity());
+        let (vertices, free) = self.vertices.split_at_mut(length);
+        let (view, mut kept) = (ListView { vertices, triangles: self.triangles }, Kept::new(free));
+        let (mut top, mut result) = (0, Ok(()));
         while band.move_to_part(top, height) {
             band.clear_to(background);
-            self.render(top, band);
+            render(&view, self.order.index(), &self.draws, band, &mut kept);
             let area = band.bounding_box();
-            if let Err(error) = flush(area, band) {
+            result = flush(area, band);
+            if result.is_err() {
                 band.all_rows();
-                return Err(error);
+                break;
             }
             top += area.size.height;
         }
-        Ok(())
+        self.vertices.truncate(length);
+        result
     }
 
     fn view(&self) -> ListView<'_> {
@@ -204,11 +211,15 @@ impl<F: PixelFormat, D: DepthFormat> Draw<'_, F, D> {
 }
 
 /// What a list holds of the rows of a band. Compiled once for all capacities.
+///
+/// Not inlined: it would share registers with what clears a band.
+#[inline(never)]
 fn render<F: PixelFormat, D: DepthFormat>(
     view: &ListView<'_>,
     index: Index<'_>,
     draws: &[Draw<'_, F, D>],
     band: &mut Band<'_, F, D>,
+    kept: &mut Kept<'_>,
 ) {
     let window = band.window();
     let Some(mut draw) = draws.first() else {
@@ -218,6 +229,8 @@ fn render<F: PixelFormat, D: DepthFormat>(
         return;
     }
     let rows = steps_of(&window);
+    // The first row of the band below, in units of 4.
+    let below = window.rows.end >> ROWS_LOG2;
     let within = |draw: &Draw<'_, F, D>| window.clone().within(&draw.viewport);
     let kind = |draw: &Draw<'_, F, D>| [draw.is_orthographic, draw.is_gray];
     // Its first triangle, and how many it has.
@@ -239,8 +252,16 @@ fn render<F: PixelFormat, D: DepthFormat>(
             draw_folded(view, triangle, draw, &mut raster);
             continue;
         }
-        view.corners(triangle, draw.look.traits.inputs(), draw.vertices, &mut corners);
-        raster.draw_clockwise(corners.each_ref());
+        let is_set_up = kept.has(id);
+        if is_set_up {
+            kept.take(&mut raster.setup);
+            view.positions(triangle, &mut corners);
+        } else {
+            view.corners(triangle, draw.look.traits.inputs(), draw.vertices, &mut corners);
+        }
+        if raster.draw_clockwise(corners.each_ref(), is_set_up) && i32::from(triangle.rows[1]) >= below {
+            kept.put(id, &raster.setup, &raster.needs);
+        }
     }
 }
 

@@ -22,7 +22,8 @@ use crate::num::{I12F4, I16F16, U1F31, U8F8};
 use crate::scene::Vertex;
 
 /// A screen vertex in a list: position, q and the attributes that its shader reads.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub(crate) struct ListVertex {
     pub(crate) x: I12F4,
     pub(crate) y: I12F4,
@@ -116,6 +117,16 @@ impl ListView<'_> {
     ) {
         for (to, slot) in to.iter_mut().zip(triangle.corners) {
             self.fetch(slot, inputs, mesh, to);
+        }
+    }
+
+    /// Likewise, but the positions alone.
+    #[inline]
+    pub(crate) fn positions(&self, triangle: &ListTriangle, to: &mut [ScreenVertex; 3]) {
+        for (to, slot) in to.iter_mut().zip(triangle.corners) {
+            if let Some(at) = self.vertices.get(usize::from(slot)) {
+                (to.x, to.y) = (at.x, at.y);
+            }
         }
     }
 

@@ -7,6 +7,7 @@ mod display_list;
 mod entries;
 mod extent;
 mod index;
+mod kept;
 mod memory;
 mod order;
 mod record;

@@ -97,6 +97,19 @@ pub(crate) fn record(
     Ok(move_together(vertices, triangles, (mesh, first), style.inputs, (own, next)))
 }
 
+/// Keeps a vertex for the first time, in the `next` slot.
+#[inline(never)]
+fn keep_first((style, mesh): (&Style<'_>, &Mesh<'_>), index: u16, vertex: &mut ListVertex, next: &mut u16) {
+    vertex.q |= KEPT;
+    vertex.attributes[3] = *next;
+    *next += 1;
+    if style.has_color()
+        && let Some(color) = vertex.attributes.first_chunk_mut::<3>()
+    {
+        style.coloring.of_vertex(mesh.vertex(index), bytemuck::must_cast_mut(color));
+    }
+}
+
 /// The first and the last vertex that get a slot, with all between them; `None` if no vertex does. There are `most` slots.
 ///
 /// If the mesh is a part of a larger one, whose vertices it shares, these are the first and the last that its triangles use.
@@ -221,20 +234,10 @@ impl Recorder<'_, '_> {
         let Some(vertex) = self.vertices.get_mut(slot) else {
             return 0;
         };
-        if vertex.q & KEPT != U1F31::ZERO {
-            return vertex.attributes[3];
+        if vertex.q & KEPT == U1F31::ZERO {
+            keep_first((self.style, self.mesh), index, vertex, &mut self.next);
         }
-        let next = self.next;
-        (vertex.q, self.next) = (vertex.q | KEPT, next + 1);
-        if self.style.has_color() {
-            let mut color = [U8F8::ZERO; 3];
-            self.style.coloring.of_vertex(self.mesh.vertex(index), &mut color);
-            let [red, green, blue] = color.map(U8F8::to_bits);
-            vertex.attributes = [red, green, blue, next];
-        } else {
-            vertex.attributes[3] = next;
-        }
-        next
+        vertex.attributes[3]
     }
 
     /// Records a triangle with flat shading. Its colours are its own, so its corners are too: they are appended.

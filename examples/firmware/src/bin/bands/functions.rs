@@ -33,7 +33,7 @@ pub(crate) extern "C" fn bench_s4_list() -> u32 {
 pub(crate) extern "C" fn bench_s4_bands(rows: u32) -> u32 {
     // SAFETY: as above.
     let (list, pixels, depth) =
-        unsafe { (&*addr_of_mut!(LIST), &mut *addr_of_mut!(FRAMEBUFFER), &mut *addr_of_mut!(DEPTH)) };
+        unsafe { (&mut *addr_of_mut!(LIST), &mut *addr_of_mut!(FRAMEBUFFER), &mut *addr_of_mut!(DEPTH)) };
     let mut shown = 0;
     if let (Some(list), Ok(mut band)) = (list, Deep::new(Size::new(s4::SIZE.width, rows), pixels, depth)) {
         let Ok(()) = s4::render(list, &mut band, |band| {
