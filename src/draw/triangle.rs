@@ -123,7 +123,7 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     }
 
     /// A triangle that is not culled. False if it has no pixels in the window.
-    #[inline(never)]
+    #[inline]
     pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
         self.draw_perhaps_set_up(triangle, false)
     }

@@ -46,7 +46,7 @@ impl<'l> Kept<'l> {
     }
 
     /// Takes the first one out.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn take(&mut self, setup: &mut TriangleSetup) {
         let Some(slots) = self.slots.get(self.first..) else {
             return;
@@ -67,7 +67,7 @@ impl<'l> Kept<'l> {
     }
 
     /// Puts one in, if there is room.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn put(&mut self, id: u16, setup: &TriangleSetup, needs: &Needs) {
         if setup.planes.is_sliver() {
             return;
