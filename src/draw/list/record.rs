@@ -19,7 +19,7 @@ use crate::geometry::{
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
 use crate::raster::rows_of_folded;
-use crate::scene::{Mesh, Projection};
+use crate::scene::{Mesh, Projection, Vertex};
 use heapless::VecView;
 
 /// Adds one mesh to a list.
@@ -39,8 +39,6 @@ struct Recorder<'l, 'm> {
     own: core::ops::Range<usize>,
     /// Whether any vertex has to be clipped: see [`CUT_OFF`].
     is_any_cut_off: bool,
-    /// The final slot of the next vertex that is kept.
-    next: u16,
     /// How many vertices and triangles found no room. They are counted to the end, so that the error can say what was
     /// needed.
     missing: [usize; 2],
@@ -86,27 +84,24 @@ pub(crate) fn record(
         to_slot,
         own,
         is_any_cut_off: false,
-        next: start as u16,
         missing: [0; 2],
     };
     recorder.place(first, stats);
     recorder.add_triangles(stats);
     recorder.fits()?;
-    let Recorder { vertices, triangles, own, next, .. } = recorder;
+    let Recorder { vertices, triangles, own, .. } = recorder;
     let triangles = triangles.get_mut(first_triangle..).unwrap_or_default();
-    Ok(move_together(vertices, triangles, (mesh, first), style.inputs, (own, next)))
+    Ok(move_together(vertices, triangles, (mesh, first), style.inputs, own))
 }
 
-/// Keeps a vertex for the first time, in the `next` slot.
+/// Keeps a vertex for the first time.
 #[inline(never)]
-fn keep_first((style, mesh): (&Style<'_>, &Mesh<'_>), index: u16, vertex: &mut ListVertex, next: &mut u16) {
+fn keep_first(style: &Style<'_>, of_mesh: &Vertex, vertex: &mut ListVertex) {
     vertex.q |= KEPT;
-    vertex.attributes[3] = *next;
-    *next += 1;
     if style.has_color()
         && let Some(color) = vertex.attributes.first_chunk_mut::<3>()
     {
-        style.coloring.of_vertex(mesh.vertex(index), bytemuck::must_cast_mut(color));
+        style.coloring.of_vertex(of_mesh, bytemuck::must_cast_mut(color));
     }
 }
 
@@ -226,18 +221,15 @@ impl Recorder<'_, '_> {
         Ok(())
     }
 
-    /// Keeps a vertex of the mesh; returns the slot that it will have at the end. When it is kept for the first time
-    /// it gets its colour, and this final slot is stored in `attributes[3]` until [`move_together`].
+    /// Keeps a vertex of the mesh; returns its slot, which [`move_together`] will change. When it is kept for the first time it gets its
+    /// colour.
     #[inline]
     fn keep(&mut self, index: u16) -> u16 {
         let slot = usize::from(index).wrapping_add(self.to_slot);
-        let Some(vertex) = self.vertices.get_mut(slot) else {
-            return 0;
-        };
-        if vertex.q & KEPT == U1F31::ZERO {
-            keep_first((self.style, self.mesh), index, vertex, &mut self.next);
+        if let Some(vertex) = self.vertices.get_mut(slot).filter(|vertex| vertex.q & KEPT == U1F31::ZERO) {
+            keep_first(self.style, self.mesh.vertex(index), vertex);
         }
-        vertex.attributes[3]
+        slot as u16
     }
 
     /// Records a triangle with flat shading. Its colours are its own, so its corners are too: they are appended.
