@@ -50,40 +50,52 @@ pub(crate) struct Touching<'l> {
     rows: [u8; 2],
     /// The next place in the order; without one, the number of the next triangle.
     at: usize,
-    /// Without an order: the end (exclusive) of the current block.
-    end: usize,
+    /// Without an order: those of the current block that are still to be tested, and those behind it.
+    of_block: core::slice::Iter<'l, ListTriangle>,
+    behind: &'l [ListTriangle],
 }
 
 impl<'l> Touching<'l> {
     pub(crate) fn new(triangles: &'l [ListTriangle], index: Index<'l>, rows: [u8; 2]) -> Self {
-        Self { triangles, index, rows, at: 0, end: 0 }
+        Self { triangles, index, rows, at: 0, of_block: [].iter(), behind: triangles }
     }
 
     /// The number of the next triangle that touches the rows, and the triangle.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> Option<(u16, &'l ListTriangle)> {
-        let blocks = match self.index {
-            Index::Rows(blocks) => blocks,
-            Index::Order(order) => {
-                let (after, id, triangle) = next_in_order(self.triangles, order, self.rows, self.at)?;
-                self.at = after;
-                return Some((id, triangle));
-            }
-        };
+        if let Index::Order(order) = self.index {
+            let (after, id, triangle) = next_in_order(self.triangles, order, self.rows, self.at)?;
+            self.at = after;
+            return Some((id, triangle));
+        }
         loop {
-            while self.at == self.end {
-                let block = blocks.get(self.at / BLOCK)?;
-                self.end += BLOCK;
-                if !touch(block.to_le_bytes(), self.rows) {
-                    self.at = self.end;
+            for triangle in self.of_block.by_ref() {
+                self.at += 1;
+                if touch(triangle.rows, self.rows) {
+                    return Some((self.at as u16 - 1, triangle));
                 }
             }
+            self.start_block()?;
+        }
+    }
+
+    /// Goes on to the next block that touches the rows.
+    #[inline(always)]
+    fn start_block(&mut self) -> Option<()> {
+        let Index::Rows(blocks) = &mut self.index else {
+            return None;
+        };
+        loop {
+            let (block, left) = blocks.split_first()?;
+            *blocks = left;
             // The last block may be shorter.
-            let triangle = self.triangles.get(self.at)?;
-            self.at += 1;
-            if touch(triangle.rows, self.rows) {
-                return Some((self.at as u16 - 1, triangle));
+            let (of_block, behind) = self.behind.split_at_checked(BLOCK).unwrap_or((self.behind, &[]));
+            self.behind = behind;
+            if touch(block.to_le_bytes(), self.rows) {
+                self.of_block = of_block.iter();
+                return Some(());
             }
+            self.at += BLOCK;
         }
     }
 }
