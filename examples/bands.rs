@@ -50,7 +50,7 @@ fn counted() -> Result<Vec<Line>, Box<dyn Error>> {
 }
 
 /// The picture in bands of some height.
-fn drawn(list: &s4::List<'_>, rows: u32) -> Result<Vec<u16>, Box<dyn Error>> {
+fn drawn(list: &mut s4::List<'_>, rows: u32) -> Result<Vec<u16>, Box<dyn Error>> {
     let words = (s4::SIZE.width * rows) as usize;
     let (mut pixels, mut depth) = (vec![0; words], vec![0; words]);
     let mut band = bench::Deep::new(Size::new(s4::SIZE.width, rows), &mut pixels, &mut depth)?;
@@ -82,7 +82,7 @@ fn run(directory: &Path) -> Result<(), Box<dyn Error>> {
     );
     for line in &lines {
         let rows = line.rows.unwrap_or(s4::SIZE.height);
-        let shown = drawn(&list, rows)?;
+        let shown = drawn(&mut list, rows)?;
         if shown != frame.pixels() {
             return Err(format!("bands of {rows} rows show another picture than a whole frame").into());
         }

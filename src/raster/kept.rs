@@ -150,3 +150,105 @@ fn copy(from: &[Words], to: &mut [Words]) {
         black_box(());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::attribute::Attribute;
+    use super::super::needs::InputCode;
+    use super::super::packing::Packing;
+    use super::super::straight::Straight;
+    use super::*;
+    use crate::geometry::Inputs;
+    use proptest::prelude::*;
+    use std::vec;
+
+    fn needs(inputs: Inputs) -> Needs {
+        Needs {
+            code: InputCode::of(inputs),
+            straight: Straight::Always,
+            every_pixel: false,
+            scale: 0,
+            unscaled_packing: Packing::default(),
+            packing: Packing::default(),
+            margins: [0; 2],
+            color_step: 1,
+            depth: true,
+            gray: false,
+        }
+    }
+
+    /// A set-up of any numbers.
+    fn any_setup(words: &[[u32; 4]], flags: u32) -> TriangleSetup {
+        let flag = |number: u32| flags >> number & 1 != 0;
+        let [a, b, c, d] = words[0].map(|word| word as i32);
+        let [e, f, bits, _] = words[1].map(|word| word as i32);
+        let mut setup = TriangleSetup {
+            corners: [[bits as i16, e as i16], [a as i16, b as i16], [c as i16, d as i16]],
+            z: Plane { origin: words[0][3], steps: [b, c] },
+            bends: [[a, b, c], [d, e, f]],
+            longest: (bits & 31) as u8,
+            q_step_zeros: (bits >> 8 & 31) as u8,
+            q_rises: flag(0),
+            is_level: flag(1),
+            gray: flag(2),
+            is_small: flag(3),
+            is_held: flag(4),
+            is_bent: flag(5),
+            straight: flag(6),
+            leans: flag(7),
+            is_extreme: flag(8),
+            ..TriangleSetup::new()
+        };
+        let attributes: &[Attribute] = bytemuck::cast_slice(&words[2..]);
+        setup.attributes.copy_from_slice(attributes);
+        setup
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn what_is_read_is_what_was_written_in_2_000_cases(
+            words in prop::collection::vec(any::<[u32; 4]>(), 24),
+            flags in any::<[u32; 2]>(),
+            inputs in prop::sample::select(vec![Inputs::None, Inputs::Uv, Inputs::Color, Inputs::UvColor]),
+            id in any::<u16>(),
+        ) {
+            let (needs, setup) = (needs(inputs), any_setup(&words[..12], flags[0]));
+            let count = setup.words(&needs);
+            prop_assert!(count <= 13);
+            // One more, which stays what it was.
+            let mut to = vec![[7; 4]; count + 1];
+            setup.write(id, &mut to[..count]);
+            prop_assert_eq!(to[count], [7; 4]);
+            prop_assert_eq!(number_and_count(&to[0]), (id.into(), count));
+            let mut read = any_setup(&words[12..], flags[1]);
+            read.read(&to[..count]);
+
+            let kind = |setup: &TriangleSetup| [setup.is_small, setup.is_held, setup.is_bent, setup.gray];
+            prop_assert_eq!(kind(&read), kind(&setup));
+            prop_assert_eq!((read.longest, read.sliver), (setup.longest, false));
+            prop_assert_eq!((read.z.origin, read.z.steps), (setup.z.origin, setup.z.steps));
+            if !setup.is_plain() {
+                let form = |setup: &TriangleSetup| {
+                    [setup.q_rises, setup.is_level, setup.straight, setup.leans, setup.is_extreme]
+                };
+                prop_assert_eq!(form(&read), form(&setup));
+                prop_assert_eq!((read.bends, read.q_step_zeros), (setup.bends, setup.q_step_zeros));
+                prop_assert_eq!(read.corners()[0], setup.corners()[0]);
+            }
+            let attributes = |setup: &TriangleSetup| {
+                must_cast_ref::<_, [Words; 10]>(&setup.attributes)[..count - if setup.is_plain() { 1 } else { 3 }].to_vec()
+            };
+            prop_assert_eq!(attributes(&read), attributes(&setup));
+            // Of all that are read, or of a plain colour its plane.
+            let read_by_shader = match inputs {
+                Inputs::None => 0,
+                Inputs::Uv => 2,
+                Inputs::Color => if setup.gray { 1 } else { 3 },
+                Inputs::UvColor => if setup.gray { 3 } else { 5 },
+            };
+            let plane_only = setup.is_plain() && needs.reads_color();
+            prop_assert_eq!(attributes(&setup).len(), 2 * read_by_shader - usize::from(plane_only));
+        }
+    }
+}

@@ -47,7 +47,7 @@ use heapless::{Vec, VecView};
 /// A draw takes 148 bytes, besides, on a chip with pointers of 32 bits. [`memory`](crate::guide::memory) has a recipe for all of it.
 ///
 /// The picture is the same bytes for every height of the bands, and as drawn at once into a whole frame in the same order.
-/// Rendering takes `&self`, and a list is `Send` and `Sync`: two cores can render two bands.
+/// [`render`](DisplayList::render) takes `&self`, and a list is `Send` and `Sync`: two cores can render two bands.
 ///
 /// ```
 /// use fixel::embedded_graphics::{pixelcolor::Rgb565, prelude::*};
@@ -146,6 +146,11 @@ impl<'a, F: PixelFormat, D: DepthFormat, const N: usize> DisplayList<'a, F, D, N
     /// Draws a screen of `height` rows (at most 1023) from the top down, as many at a time as the band has, and hands each
     /// to `flush`, with its area. In the last there may be fewer rows. A DMA channel can send them while the next is drawn:
     /// [`Band::swap_pixels`] in `flush`. (Swap pixels there, not bands.)
+    ///
+    /// It takes `&mut self` for memory: slots of vertices that the list does not need keep the set-up of triangles that reach into the
+    /// next band, 5 to 10 slots each, up to 13 with colours that are no greys. A triangle that finds no room is set up again there,
+    /// as [`DisplayList::render`] does; the picture is the same. On a Cortex-M0+ a small one takes 1300 cycles less if it is kept,
+    /// and a large one 4000.
     ///
     /// # Errors
     ///

@@ -57,13 +57,16 @@ impl<'l> Kept<'l> {
         let (_, count) = number_and_count(head);
         setup.read(slots.get(..count).unwrap_or_default());
         self.first += count;
+        if self.first == self.last {
+            self.next = NONE;
+            return;
+        }
         if self.first == self.end {
             (self.first, self.end) = (0, self.slots.len());
         }
-        self.next = match self.slots.get(self.first) {
-            Some(head) if self.first != self.last => number_and_count(head).0,
-            _ => NONE,
-        };
+        if let Some(head) = self.slots.get(self.first) {
+            self.next = number_and_count(head).0;
+        }
     }
 
     /// Puts one in, if there is room.
@@ -90,6 +93,91 @@ impl<'l> Kept<'l> {
         self.last += count;
         if self.next == NONE {
             self.next = id.into();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Inputs;
+    use crate::raster::{InputCode, Packing, Straight};
+    use proptest::prelude::*;
+    use std::vec;
+
+    fn needs() -> Needs {
+        let packing = || Packing::new(None, 0, Inputs::None);
+        Needs {
+            code: InputCode::of(Inputs::UvColor),
+            straight: Straight::Always,
+            every_pixel: false,
+            scale: 0,
+            unscaled_packing: packing(),
+            packing: packing(),
+            margins: [0; 2],
+            color_step: 1,
+            depth: true,
+            gray: false,
+        }
+    }
+
+    /// A set-up that tells of which triangle it is, in its first and in its last part.
+    fn of_triangle(id: u16) -> TriangleSetup {
+        let mut setup = TriangleSetup::new();
+        (setup.is_small, setup.gray) = (!id.is_multiple_of(3), !id.is_multiple_of(5));
+        setup.z.origin = id.into();
+        let colors = if setup.gray { 1 } else { 3 };
+        setup.attributes[1 + colors].plane.origin = id.into();
+        setup
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn a_band_finds_what_the_one_before_kept_in_2_000_cases(
+            triangles in prop::collection::vec((0..12_usize, 1..12_usize), 1..60),
+            room in 0..400_usize,
+            garbage in any::<u32>(),
+        ) {
+            // What looks like an entry of any of them.
+            let garbage = bytemuck::must_cast([0, 0, 0, garbage % 60 | 6 << 24 | 3 << 30]);
+            let (slots, needs) = (&mut vec![garbage; room], needs());
+            let mut kept = Kept::new(slots);
+            let (mut found, mut looked_for) = (0, 0);
+            for band in 0..24 {
+                for (id, &(top, bands)) in triangles.iter().enumerate() {
+                    let rows = top..top + bands;
+                    if !rows.contains(&band) {
+                        continue;
+                    }
+                    let id = id as u16;
+                    let mut setup = of_triangle(id);
+                    looked_for += usize::from(band > top);
+                    if kept.has(id) {
+                        prop_assert!(band > top);
+                        found += 1;
+                        setup = TriangleSetup::new();
+                        kept.take(&mut setup);
+                    }
+                    let right = of_triangle(id);
+                    let colors = if right.gray { 1 } else { 3 };
+                    let marks = |setup: &TriangleSetup| {
+                        (setup.z.origin, setup.attributes[1 + colors].plane.origin, setup.is_small, setup.gray)
+                    };
+                    prop_assert_eq!(marks(&setup), marks(&right));
+                    if band + 1 < rows.end {
+                        kept.put(id, &setup, &needs);
+                    }
+                }
+            }
+            prop_assert!(found <= looked_for);
+            // An entry takes 13 slots at most: with room for all of two bands and a gap none is lost.
+            if room > (2 * triangles.len() + 1) * 13 {
+                prop_assert_eq!(found, looked_for);
+            }
+            if room < 6 {
+                prop_assert_eq!(found, 0);
+            }
         }
     }
 }

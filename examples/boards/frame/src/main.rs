@@ -52,7 +52,7 @@ extern "C" fn frame_list(frame: u32) -> u32 {
 #[unsafe(no_mangle)]
 extern "C" fn frame_bands(rows: u32) -> u32 {
     let (list, pixels, depth) =
-        unsafe { (&*addr_of_mut!(LIST), &mut *addr_of_mut!(PIXELS), &mut *addr_of_mut!(DEPTH)) };
+        unsafe { (&mut *addr_of_mut!(LIST), &mut *addr_of_mut!(PIXELS), &mut *addr_of_mut!(DEPTH)) };
     let mut drawn = 0;
     if let (Some(list), Ok(mut band)) =
         (list, Band::<Rgb, Depth16>::new(Size::new(SCREEN.width, rows), pixels, depth))
@@ -97,7 +97,7 @@ extern "C" fn frame_oled_list(frame: u32) -> u32 {
 #[unsafe(no_mangle)]
 extern "C" fn frame_oled_bands(rows: u32) -> u32 {
     let (list, pixels, depth) =
-        unsafe { (&*addr_of_mut!(OLED_LIST), &mut *addr_of_mut!(GRAYS), &mut *addr_of_mut!(DEPTH)) };
+        unsafe { (&mut *addr_of_mut!(OLED_LIST), &mut *addr_of_mut!(GRAYS), &mut *addr_of_mut!(DEPTH)) };
     let mut drawn = 0;
     if let (Some(list), Ok(mut band)) =
         (list, Band::<Gray8, Depth16>::new(Size::new(OLED.width, rows), pixels, depth))

@@ -35,12 +35,12 @@ pub(crate) fn on_top<F: PixelFormat<Color: From<Rgb888>>>(band: &mut Band<'_, F,
 /// A scene in a list.
 pub(crate) fn with_list<F: PixelFormat, R>(
     screen: Size,
-    work: impl FnOnce(&List<'_, F>, &Gradient) -> R,
+    work: impl FnOnce(&mut List<'_, F>, &Gradient) -> R,
 ) -> R {
     let mut memory = Box::new(ListMemory::<{ COUNTS.vertices }, { COUNTS.triangles }>::new());
     let mut list = List::new(&mut memory);
     draw(screen, &mut list).expect("the list has room for the torus");
-    work(&list, &sky(screen))
+    work(&mut list, &sky(screen))
 }
 
 /// Hands the frame to `show`, in bands of 16 rows.
