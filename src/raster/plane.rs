@@ -11,11 +11,11 @@ use crate::num::mul_round;
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub(crate) struct Plane {
-    /// The value at the centre of the [first pixel](super::triangle::TriangleSetup::first_pixel). In a sliver: at corner 0.
-    pub(crate) origin: u32,
     /// The change over one column to the right, and over one row down. In a sliver: from corner 0 to corner 1, and to corner
     /// 2.
     pub(crate) steps: [i32; 2],
+    /// The value at the centre of the [first pixel](super::triangle::TriangleSetup::first_pixel). In a sliver: at corner 0.
+    pub(crate) origin: u32,
 }
 
 impl Plane {
