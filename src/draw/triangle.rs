@@ -131,7 +131,8 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
     #[inline(always)]
     fn draw_perhaps_set_up(&mut self, triangle: &Oriented<'_>, is_set_up: bool) -> bool {
         let Self { look, needs, setup, target } = self;
-        let is_seen = setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs, is_set_up);
+        let is_seen =
+            setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs, is_set_up);
         if is_seen {
             look.paint(Cover { setup, target });
         }

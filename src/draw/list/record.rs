@@ -14,7 +14,7 @@ use super::entries::{CUT_OFF, IN_NEXT, KEPT, ListTriangle, ListVertex, MOST_SLOT
 use super::style::Style;
 use crate::frame::Window;
 use crate::geometry::{
-    Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, Upper, area, clockwise, dim, set_attributes,
+    Count, Inputs, MOST_CORNERS, Placing, ScreenVertex, Stats, Upper, area, clockwise, dim, set_attributes,
 };
 use crate::math::Pose;
 use crate::num::{I16F16, U1F31, U8F8};
@@ -87,8 +87,10 @@ pub(crate) fn record(
         is_any_cut_off: false,
         missing: [0; 2],
     };
-    recorder.place(first, stats);
-    recorder.add_triangles(stats);
+    match stats.stats() {
+        Some(stats) => recorder.record_counted(first, stats),
+        None => recorder.record_uncounted(first),
+    }
     recorder.fits()?;
     let Recorder { vertices, triangles, own, .. } = recorder;
     let triangles = triangles.get_mut(first_triangle..).unwrap_or_default();
@@ -128,6 +130,20 @@ fn named(mesh: &Mesh<'_>, most: usize) -> Option<[u16; 2]> {
 }
 
 impl Recorder<'_, '_> {
+    /// Records the mesh, from its vertex `first` on. As the next one without type parameters, so that it is compiled with this crate, at
+    /// its level of optimisation and not at that of the program.
+    #[inline(never)]
+    fn record_counted(&mut self, first: u16, stats: &mut Stats) {
+        self.place(first, stats);
+        self.add_triangles(stats);
+    }
+
+    #[inline(never)]
+    fn record_uncounted(&mut self, first: u16) {
+        self.place(first, &mut ());
+        self.add_triangles(&mut ());
+    }
+
     /// Transforms vertices into their slots, from the mesh's vertex `first` on. The caller has checked that there is room.
     #[inline(never)]
     fn place(&mut self, first: u16, stats: &mut impl Count) {
