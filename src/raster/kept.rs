@@ -191,7 +191,7 @@ mod tests {
             q_rises: flag(0),
             is_level: flag(1),
             gray: flag(2),
-            is_small: flag(3),
+            planes: if flag(3) { Planes::Small } else { Planes::Screen },
             is_held: flag(4),
             is_bent: flag(5),
             straight: flag(6),
@@ -224,9 +224,9 @@ mod tests {
             let mut read = any_setup(&words[12..], flags[1]);
             read.read(&to[..count]);
 
-            let kind = |setup: &TriangleSetup| [setup.is_small, setup.is_held, setup.is_bent, setup.gray];
+            let kind = |setup: &TriangleSetup| (setup.planes, setup.is_held, setup.is_bent, setup.gray);
             prop_assert_eq!(kind(&read), kind(&setup));
-            prop_assert_eq!((read.longest, read.sliver), (setup.longest, false));
+            prop_assert_eq!(read.longest, setup.longest);
             prop_assert_eq!((read.z.origin, read.z.steps), (setup.z.origin, setup.z.steps));
             if !setup.is_plain() {
                 let form = |setup: &TriangleSetup| {

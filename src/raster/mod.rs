@@ -33,4 +33,6 @@ pub(crate) use rows::Rows;
 pub(crate) use span::Span;
 pub(crate) use spans::{Spans, WIDEST};
 pub(crate) use straight::Straight;
+#[cfg(test)]
+pub(crate) use triangle::Planes;
 pub(crate) use triangle::{ATTRIBUTES, TriangleSetup};

@@ -101,7 +101,7 @@ impl<'l> Kept<'l> {
 mod tests {
     use super::*;
     use crate::geometry::Inputs;
-    use crate::raster::{InputCode, Packing, Straight};
+    use crate::raster::{InputCode, Packing, Planes, Straight};
     use proptest::prelude::*;
     use std::vec;
 
@@ -124,7 +124,8 @@ mod tests {
     /// A set-up that tells of which triangle it is, in its first and in its last part.
     fn of_triangle(id: u16) -> TriangleSetup {
         let mut setup = TriangleSetup::new();
-        (setup.is_small, setup.gray) = (!id.is_multiple_of(3), !id.is_multiple_of(5));
+        setup.planes = if id.is_multiple_of(3) { Planes::Screen } else { Planes::Small };
+        setup.gray = !id.is_multiple_of(5);
         setup.z.origin = id.into();
         let colors = if setup.gray { 1 } else { 3 };
         setup.attributes[1 + colors].plane.origin = id.into();
@@ -140,7 +141,7 @@ mod tests {
             garbage in any::<u32>(),
         ) {
             // What looks like an entry of any of them.
-            let garbage = bytemuck::must_cast([0, 0, 0, garbage % 60 | 6 << 24 | 3 << 30]);
+            let garbage = bytemuck::must_cast([0, 0, 0, (garbage % 60) | 6 << 24 | 3 << 30]);
             let (slots, needs) = (&mut vec![garbage; room], needs());
             let mut kept = Kept::new(slots);
             let (mut found, mut looked_for) = (0, 0);
@@ -162,7 +163,7 @@ mod tests {
                     let right = of_triangle(id);
                     let colors = if right.gray { 1 } else { 3 };
                     let marks = |setup: &TriangleSetup| {
-                        (setup.z.origin, setup.attributes[1 + colors].plane.origin, setup.is_small, setup.gray)
+                        (setup.z.origin, setup.attributes[1 + colors].plane.origin, setup.planes, setup.gray)
                     };
                     prop_assert_eq!(marks(&setup), marks(&right));
                     if band + 1 < rows.end {
