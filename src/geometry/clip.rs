@@ -72,7 +72,7 @@ pub(super) const FINER: u32 = 13;
 
 /// 1/w.
 #[derive(Clone, Copy)]
-struct Inverse {
+pub(super) struct Inverse {
     /// 1/w = mantissa · 2^(`zeros` − 62), 2³⁰ … 2³¹.
     mantissa: u32,
     zeros: i32,
@@ -234,7 +234,7 @@ impl Clip {
             && self.project(
                 |axis| to_clip.place(position, axis),
                 w,
-                [0, self.scale()],
+                self.scale(),
                 &self.center,
                 within,
                 place,
@@ -242,20 +242,18 @@ impl Clip {
     }
 
     /// Where a point of clip space between the planes is on the screen, and its q; false if `within` has no place for its position
-    /// (1/16 px) along an axis. Its x, y and w may have `finer` bits more than clip coordinates (w with perspective only), and x and y
-    /// another scale and another center. Each coordinate is
-    /// computed where it is used, and each result stored at once: there are few registers.
+    /// (1/16 px) along an axis. Each coordinate is computed where it is used, and each result stored at once: there are few registers.
     #[inline(always)]
-    pub(super) fn project(
+    fn project(
         &self,
         at: impl Fn(usize) -> i32,
         w: i32,
-        [finer, scale]: [i32; 2],
+        scale: i32,
         center: &[i32; 2],
         within: impl Fn(i32) -> Option<i32>,
         (to_x, to_y, to_q): (&mut I12F4, &mut I12F4, &mut U1F31),
     ) -> bool {
-        let inverse = self.set_q(w, finer, to_q);
+        let inverse = self.set_q(w, 0, to_q);
         let Some(x) = within(screen(at(0), scale, center[0], inverse)) else {
             return false;
         };
@@ -271,7 +269,7 @@ impl Clip {
     /// Armv6-M, for 8 cycles a vertex: it is there once, and not where clipping places corners as well.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
-    fn set_q(&self, w: i32, finer: i32, to_q: &mut U1F31) -> Inverse {
+    pub(super) fn set_q(&self, w: i32, finer: i32, to_q: &mut U1F31) -> Inverse {
         let inverse;
         let q = if self.flat() != 0 {
             inverse = Inverse { mantissa: 1 << 31, zeros: 31 - self.flat() - finer };
@@ -307,7 +305,7 @@ fn in_units(distance: I16F16, unit_bits: i32, round_up: bool) -> i32 {
 
 /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
 #[inline(always)]
-fn screen(x: i32, scale: i32, center: i32, w: Inverse) -> i32 {
+pub(super) fn screen(x: i32, scale: i32, center: i32, w: Inverse) -> i32 {
     // As far as w was shifted, so that the product has FINER bits more: what overflows is beyond ±2¹⁶/16 px.
     let shift = w.zeros + scale - 17;
     let x = if shift >= 0 {

@@ -35,7 +35,7 @@
 //! of the last columns and rows that can be drawn, ±1022½ px, and inside the guard band of ±1023½ px. Nothing visible is lost
 //! for want of bits. (A corner that a matrix that is no rotation takes farther is put on the guard band's border.)
 
-use super::clip::{CUT_AT, Clip, FINER};
+use super::clip::{CUT_AT, Clip, FINER, Inverse, screen};
 use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::{GUARD, ScreenVertex};
@@ -165,6 +165,13 @@ fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> 
     }
 }
 
+/// Where x or y of a corner lies on the screen, within the guard band.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
+fn on_border(at: i32, inverse: Inverse) -> I12F4 {
+    I12F4::from_bits(screen(at, COARSER, 1 << (FINER - 1), inverse).clamp(-GUARD, GUARD) as i16)
+}
+
 impl Clip {
     /// Clips a triangle and puts what is left of it on the screen, as a fan around its first vertex. Returns how many corners
     /// that has, and whether it is [folded](super::fan). `to` begins with the attributes of the corners.
@@ -279,10 +286,8 @@ impl Clip {
         let Some(to) = polygon.vertices.get_mut(i) else {
             return;
         };
-        let on_border = |at: i32| Some(at.clamp(-GUARD, GUARD));
-        let place = (&mut to.x, &mut to.y, &mut to.q);
-        let at = |axis| if axis == 0 { x } else { y };
-        self.project(at, w, [FINE - dropped, COARSER], &[1 << (FINER - 1); 2], on_border, place);
+        let inverse = self.set_q(w, FINE - dropped, &mut to.q);
+        (to.x, to.y) = (on_border(x, inverse), on_border(y, inverse));
     }
 
     /// What x and y are divided by, in finer clip units: w, or 1 without perspective.

@@ -277,33 +277,31 @@ impl Attribute {
 #[inline(never)]
 fn held(least: i32, range: u32, ends: [i32; 2], steps: i32) -> (i32, i32) {
     let [first, last] = ends.map(|above| above.max(0).min(range as i32));
-    (least.wrapping_add(first), step_of(last - first, inverse(steps.max(1) as usize)))
+    (least.wrapping_add(first), step_of(last - first, inverse(steps.max(1) as u32)))
 }
 
-/// 1/n with 31 fraction bits, rounded down.
-static INVERSES: [i32; 32] = {
-    let mut inverses = [i32::MAX; 32];
+/// 1/n with 16 fraction bits, rounded down; of 1 a unit less.
+static INVERSES: [u16; 32] = {
+    let mut inverses = [u16::MAX; 32];
     let mut i = 1;
     while i < 32 {
-        inverses[i] = i32::MAX / i as i32;
+        inverses[i] = u16::MAX / i as u16;
         i += 1;
     }
     inverses
 };
 
-/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end.
+/// 1/`steps` with 31 fraction bits, rounded down, so that `steps` steps never lead beyond their end: 1 … 2⁻¹⁸ of itself too small.
 #[inline]
-fn inverse(steps: usize) -> i32 {
-    INVERSES.get(steps).copied().unwrap_or_else(|| {
-        let reciprocal = Reciprocal::coarse(steps as u32);
-        reciprocal.mantissa_below() >> (31 - reciprocal.zeros)
-    })
+fn inverse(steps: u32) -> i32 {
+    let reciprocal = Reciprocal::coarse(steps);
+    reciprocal.mantissa_below() >> (31 - reciprocal.zeros)
 }
 
 /// 1/`steps` of fewer than 32 with 16 fraction bits, likewise.
 #[inline]
 pub(crate) fn short_inverse(steps: i32) -> u32 {
-    INVERSES[steps as usize & 31] as u32 >> 15
+    INVERSES[steps as usize & 31].into()
 }
 
 /// `rise` in as many steps as [`inverse`] was asked for, cut towards zero.
