@@ -142,14 +142,14 @@ fn set_sides(sides: &mut [[i32; 2]], polygon: &[ScreenVertex], row: i32) {
 #[inline(never)]
 fn side(row: i32, corners: [&ScreenVertex; 3], upwards: bool) -> i32 {
     let row_of = |vertex: &ScreenVertex| first_center(vertex.y.to_bits().into());
-    let [a, b, c] = corners;
+    let mut from = corners[2];
     // A slice of a length that is hidden, so that the loop is not unrolled.
-    for edge in black_box(&[[a, b], [b, c], [c, a]][..]) {
-        let [from, to] = *edge;
+    for &to in black_box(&corners[..]) {
         let [top, bottom] = if upwards { [to, from] } else { [from, to] };
         if row_of(top) <= row && row < row_of(bottom) {
             return centers_left(top, bottom, row);
         }
+        from = to;
     }
     0
 }
