@@ -75,7 +75,8 @@ pub(super) fn move_together(
                 }
             }
         }
-        index += 1;
+        // Behind the last of the largest mesh it is 0, and not asked for.
+        index = index.wrapping_add(1);
     }
     if vertices.len() > own.end {
         all_gray &= move_down(vertices, own.end, freed);
