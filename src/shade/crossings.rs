@@ -40,8 +40,10 @@ pub(super) struct Ends {
     pub(super) way: Way,
 }
 
-/// Makes a straight line that of the cell that it is in, and says for how many pixels, at most `most`.
-#[inline(never)]
+/// Makes a straight line that of the cell that it is in, and says for how many pixels, at most `most`. Out of line on Armv6-M only: on a
+/// Cortex-M4 it takes 20 cycles less for each border otherwise.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
 pub(super) fn enter_straight<B: Border>(side: &Side, line: &mut Linear, most: u32) -> u32 {
     let slope = line.slope;
     let (seen, ahead) = B::enter(line.at, slope < 0, side);
@@ -100,13 +102,13 @@ fn pixels_up_to(far: u32, step: u32, most: u32) -> u32 {
     if IS_ARMV6M { divided_up(far, step) } else { far.div_ceil(step.max(1)) }
 }
 
-/// The quotient of two numbers that are not 0, rounded up, without an instruction that divides: by multiples of the divisor by powers
-/// of two, up and down again.
+/// The quotient of two numbers that are not 0 and below 2³⁰, rounded up, without an instruction that divides: by multiples of the divisor
+/// by powers of four, up, and of two, down again.
 #[inline(always)]
 fn divided_up(dividend: u32, divisor: u32) -> u32 {
     let (mut multiple, mut times) = (divisor, 1);
     while multiple < dividend {
-        (multiple, times) = (multiple << 1, times << 1);
+        (multiple, times) = (multiple << 2, times << 2);
         // Not unrolled.
         black_box(());
     }
