@@ -303,9 +303,16 @@ fn in_units(distance: I16F16, unit_bits: i32, round_up: bool) -> i32 {
     units.min(i64::from(i32::MAX)) as i32
 }
 
+/// Where x or y of a corner that was cut lies on the screen, within the guard band.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
+pub(super) fn on_border(at: i32, scale: i32, w: Inverse) -> I12F4 {
+    I12F4::from_bits(screen(at, scale, 1 << (FINER - 1), w).clamp(-GUARD, GUARD) as i16)
+}
+
 /// Screen position along an axis, in 1/16 px from the edge of the screen, rounded to nearest, or far beyond it.
 #[inline(always)]
-pub(super) fn screen(x: i32, scale: i32, center: i32, w: Inverse) -> i32 {
+fn screen(x: i32, scale: i32, center: i32, w: Inverse) -> i32 {
     // As far as w was shifted, so that the product has FINER bits more: what overflows is beyond ±2¹⁶/16 px.
     let shift = w.zeros + scale - 17;
     let x = if shift >= 0 {

@@ -35,10 +35,10 @@
 //! of the last columns and rows that can be drawn, ±1022½ px, and inside the guard band of ±1023½ px. Nothing visible is lost
 //! for want of bits. (A corner that a matrix that is no rotation takes farther is put on the guard band's border.)
 
-use super::clip::{CUT_AT, Clip, FINER, Inverse, screen};
+use super::clip::{CUT_AT, Clip, FINER, on_border};
 use super::fan::center;
 use super::ratio::{Ratio, mix};
-use super::screen::{GUARD, ScreenVertex};
+use super::screen::ScreenVertex;
 use super::transform::{FINE, ToClip};
 use crate::num::{I12F4, I16F16, U8F8, mul_long, wide, zeros_of};
 use crate::scene::Vertex;
@@ -163,13 +163,6 @@ fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> 
     }
 }
 
-/// Where x or y of a corner lies on the screen, within the guard band.
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
-fn on_border(at: i32, inverse: Inverse) -> I12F4 {
-    I12F4::from_bits(screen(at, COARSER, 1 << (FINER - 1), inverse).clamp(-GUARD, GUARD) as i16)
-}
-
 impl Clip {
     /// Clips a triangle and puts what is left of it on the screen, as a fan around its first vertex. Returns how many corners
     /// that has, and whether it is [folded](super::fan). `to` begins with the attributes of the corners.
@@ -285,7 +278,7 @@ impl Clip {
             return;
         };
         let inverse = self.set_q(w, FINE - dropped, &mut to.q);
-        (to.x, to.y) = (on_border(x, inverse), on_border(y, inverse));
+        (to.x, to.y) = (on_border(x, COARSER, inverse), on_border(y, COARSER, inverse));
     }
 
     /// What x and y are divided by, in finer clip units: w, or 1 without perspective.
