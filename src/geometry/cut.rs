@@ -148,7 +148,8 @@ impl Polygon<'_> {
     }
 }
 
-/// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and copies them by words: swapped in place they would be byte by byte.
+/// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and copies them by words: swapped in place
+/// they would be byte by byte.
 #[inline(never)]
 fn exchange(a: &mut ScreenVertex, b: &mut ScreenVertex) {
     *a = mem::replace(b, *a);

@@ -146,8 +146,8 @@ impl TriangleSetup {
         v.keep_straight_inside(needs.packing.inset.into());
     }
 
-    /// An attribute of a small triangle at a pixel beyond the first one, I16F16, and its step along a row of at most `longest` steps. One that is held does
-    /// not leave its range.
+    /// An attribute of a small triangle at a pixel beyond the first one, I16F16, and its step along a row of at most `longest` steps. One
+    /// that is held does not leave its range.
     #[inline]
     pub(crate) fn along(&self, i: usize, place: [i32; 2], steps: i32) -> (i32, i32) {
         let Some(attribute) = self.attributes.get(i) else {
