@@ -38,8 +38,7 @@ const fn table() -> [u16; INTERVALS] {
 }
 
 /// 1/d as a mantissa and the leading zeros of d: 1/d = `mantissa` · 2^(`zeros` − 62).
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Reciprocal {
     /// 2³⁰ … 2³¹ − 1.
     pub(crate) mantissa: i32,

@@ -250,7 +250,7 @@ impl TriangleSetup {
         })
     }
 
-    /// A plane's value at a pixel, of any triangle: in a sliver by how much corners 1 and 2 count there.
+    /// A plane's value at a pixel of a triangle that is not small: in a sliver by how much corners 1 and 2 count there.
     #[inline]
     pub(crate) fn at_or_weighted(&self, plane: &Plane, [x, y]: [i32; 2], weights: &[u32; 2]) -> u32 {
         if self.planes.is_sliver() { plane.weighted(weights) } else { plane.at([x, y]) }

@@ -141,7 +141,8 @@ fn beyond_first([column, row]: [usize; 2]) -> [i32; 2] {
 }
 
 /// Leaves of a row what follows its hidden pixels. Of a run of so many pixels, from a column and a row of the table on, the last `left`
-/// were not tested, but for the first of them, which is hidden. Returns how many are visible before that, and the end of the rows that are still to be drawn.
+/// were not tested, but for the first of them, which is hidden. Returns how many are visible before that, and the end of the rows that are
+/// still to be drawn.
 ///
 /// It finds all anew, so that nothing is kept for it. A format is asked once to test and store for each pixel of a triangle, as one that
 /// counts them expects.

@@ -5,8 +5,8 @@
 //! - Assumes: u and v stay where [`uv_bits`](super::border::uv_bits) of the triangle says.
 //!
 //! Along a run u and v are monotonic. So a run is split where it [enters](super::crossings) another [cell](super::border), and [`Texels`]
-//! draws the pieces. Most runs have one: they are drawn as they are. Only mirrored textures have more than three cells to a side; where cells are a few pixels long each pixel is
-//! folded by itself.
+//! draws the pieces. Most runs have one: they are drawn as they are. Only mirrored textures have more than three cells to a side; where cells
+//! are a few pixels long each pixel is folded by itself.
 //!
 //! Along chords the coordinates of the pixels between nodes lie between those of the nodes, in the cell.
 
