@@ -126,12 +126,16 @@ macro_rules! fill_row_of_lit_texels {
     };
 }
 
-/// Light on texels that are there already.
+/// Light on texels that are there already. (Counted: on Armv6-M an iterator would take a few cycles more for the end of each row.)
 #[inline(always)]
 fn light_row<const M: usize, F: PixelFormat, C: Channels<M>>(pixels: &mut [F::Word], mut light: C, step: C) {
-    for pixel in pixels {
+    let (count, mut i) = (pixels.len(), 0);
+    while i < count
+        && let Some(pixel) = pixels.get_mut(i)
+    {
         *pixel = lit::<F>(F::texel(*pixel), light.rgb());
         light = light.plus(step);
+        i += 1;
         black_box(());
     }
 }
