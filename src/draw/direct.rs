@@ -96,7 +96,7 @@ where
             return Ok(());
         }
         let needs: Needs = Traits::of::<F, S>(shader).needs::<F>(false, is_orthographic, false);
-        if !self.setup.prepare(&mut self.rows, &triangle, &self.window, &needs, false) {
+        if !self.setup.prepare(&mut self.rows, &triangle, &self.window, &needs) {
             return Ok(());
         }
         if self.setup.is_patch() && RUN >= WIDEST {

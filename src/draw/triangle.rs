@@ -57,7 +57,7 @@ pub(crate) struct Raster<'a, F: PixelFormat, D: DepthFormat> {
     look: &'a Look<'a, F, D>,
     pub(super) needs: Needs,
     pub(super) setup: TriangleSetup,
-    target: Target<'a, F, D>,
+    pub(super) target: Target<'a, F, D>,
 }
 
 impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
@@ -115,28 +115,41 @@ impl<'a, F: PixelFormat, D: DepthFormat> Raster<'a, F, D> {
         }
     }
 
-    /// A triangle that is clockwise on the screen, and perhaps set up already. False if it has no pixels in the window.
+    /// A triangle that is clockwise on the screen. False if it has no pixels in the window.
     #[inline]
-    pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3], is_set_up: bool) -> bool {
+    pub(crate) fn draw_clockwise(&mut self, vertices: [&ScreenVertex; 3]) -> bool {
         let area = area(vertices.map(position)) as u32;
-        self.draw_perhaps_set_up(&Oriented { vertices, area }, is_set_up)
+        self.draw_oriented(&Oriented { vertices, area })
     }
 
     /// A triangle that is not culled. False if it has no pixels in the window.
-    #[inline]
-    pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
-        self.draw_perhaps_set_up(triangle, false)
-    }
-
     #[inline(always)]
-    fn draw_perhaps_set_up(&mut self, triangle: &Oriented<'_>, is_set_up: bool) -> bool {
-        let Self { look, needs, setup, target } = self;
-        let is_seen =
-            setup.prepare(&mut target.memory.rows, triangle, &target.memory.window, needs, is_set_up);
+    pub(crate) fn draw_oriented(&mut self, triangle: &Oriented<'_>) -> bool {
+        let Self { needs, setup, target, .. } = self;
+        let Memory { rows, window, .. } = &mut target.memory;
+        let is_seen = setup.prepare(rows, triangle, window, needs);
         if is_seen {
-            look.paint(Cover { setup, target });
+            self.paint();
         }
         is_seen
+    }
+
+    /// One that is clockwise, not small, and set up already.
+    #[inline]
+    pub(super) fn draw_set_up(&mut self, vertices: [&ScreenVertex; 3]) -> bool {
+        let Memory { rows, window, .. } = &mut self.target.memory;
+        let is_seen = rows.start_any(vertices, window);
+        if is_seen {
+            self.paint();
+        }
+        is_seen
+    }
+
+    /// The triangle that is set up, in its rows.
+    #[inline]
+    pub(super) fn paint(&mut self) {
+        let Self { look, setup, target, .. } = self;
+        look.paint(Cover { setup, target });
     }
 
     /// A polygon that is folded.

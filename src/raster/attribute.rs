@@ -44,6 +44,24 @@ pub(crate) struct Place {
 }
 
 impl Attribute {
+    /// What pixels of a plain triangle take of a texture coordinate: its plane, and the first and the last texel.
+    #[inline(always)]
+    pub(super) fn plain(&self) -> [u32; 4] {
+        let [a, b, c] = bytemuck::must_cast(self.plane);
+        let last = self.least.wrapping_add_unsigned(self.range);
+        [a, b, c, (self.least as u32) >> 16 | (last >> 16 << 16) as u32]
+    }
+
+    /// Becomes that. Its range goes from the start of the first texel to that of the last.
+    #[inline(always)]
+    pub(super) fn set_plain(&mut self, &[a, b, c, texels]: &[u32; 4]) {
+        self.plane = bytemuck::must_cast([a, b, c]);
+        let (first, last) = (texels << 16, texels >> 16 << 16);
+        self.least = first as i32;
+        self.range = last.wrapping_sub(first);
+        self.set_scale_log2(0);
+    }
+
     /// What a straight triangle's plane begins with at corner 0.
     #[inline]
     pub(crate) fn origin(&self) -> u32 {

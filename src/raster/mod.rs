@@ -26,9 +26,11 @@ mod triangle;
 pub(crate) use attribute::{Attribute, Place, short_inverse, towards_zero};
 pub(crate) use depth::{first_visible, visible};
 pub(crate) use folded::{Runs, rows_of_folded};
-pub(crate) use kept::{Words, number_and_count};
+pub(crate) use kept::{has_rows, number};
 pub(crate) use needs::{InputCode, Needs};
 pub(crate) use packing::Packing;
+#[cfg(test)]
+pub(crate) use rows::LongRows;
 pub(crate) use rows::Rows;
 pub(crate) use span::Span;
 pub(crate) use spans::{Spans, WIDEST};

@@ -8,11 +8,11 @@ use super::needs::Needs;
 use super::rows::{Rows, Small};
 use super::triangle::TriangleSetup;
 use crate::frame::Window;
-use crate::geometry::Oriented;
+use crate::geometry::{Oriented, ScreenVertex};
 use core::hint::black_box;
 
 impl TriangleSetup {
-    /// Prepares a triangle: its rows, and its planes, unless these `are_set`. One of each serves all triangles of a draw, one after another.
+    /// Prepares a triangle: its rows, and its planes. One of each serves all triangles of a draw, one after another.
     /// False if it has no pixels in the window. (True does not mean that it has.)
     ///
     /// What this calls is called from here, one after another, and not from each other: so that what finds the rows is not on the
@@ -24,31 +24,41 @@ impl TriangleSetup {
         triangle: &Oriented<'_>,
         window: &Window,
         needs: &Needs,
-        are_set: bool,
     ) -> bool {
-        let [a, b, c] = triangle.vertices;
-        // Hidden: as selects instead of branches it takes 25 cycles more on a Cortex-M4.
-        let from_top = if a.y <= b.y && a.y <= c.y {
-            black_box([a, b, c])
-        } else if b.y <= c.y {
-            black_box([b, c, a])
-        } else {
-            black_box([c, a, b])
-        };
+        let from_top = from_top(triangle.vertices);
         match rows.start_small(&from_top, window) {
             Small::Hidden => return false,
             Small::Rows => {
                 self.set_first_corner(from_top[0]);
-                if are_set || (needs.code.small)(self, &from_top, triangle.area, needs) {
+                if (needs.code.small)(self, &from_top, triangle.area, needs) {
                     return true;
                 }
             }
             Small::Not if !rows.start_long(&from_top, window) => return false,
             Small::Not => {}
         }
-        if !are_set {
-            (needs.code.any)(self, &from_top, triangle.area, needs);
-        }
+        (needs.code.any)(self, &from_top, triangle.area, needs);
         true
+    }
+}
+
+impl Rows {
+    /// Starts a triangle that is not small, and clockwise. False if it has no pixels in the window. (True does not mean that it has.)
+    #[inline]
+    pub(crate) fn start_any(&mut self, vertices: [&ScreenVertex; 3], window: &Window) -> bool {
+        self.start_long(&from_top(vertices), window)
+    }
+}
+
+/// The same from the uppermost on.
+#[inline(always)]
+pub(super) fn from_top([a, b, c]: [&ScreenVertex; 3]) -> [&ScreenVertex; 3] {
+    // Hidden: as selects instead of branches it takes 25 cycles more on a Cortex-M4.
+    if a.y <= b.y && a.y <= c.y {
+        black_box([a, b, c])
+    } else if b.y <= c.y {
+        black_box([b, c, a])
+    } else {
+        black_box([c, a, b])
     }
 }

@@ -96,8 +96,9 @@ pub(super) enum Small {
     Not,
 }
 
-/// The rows of a triangle of any size.
+/// The rows of a triangle of any size. The side comes last, so that spans begin where this does.
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub(crate) struct LongRows {
     left: Edge,
     right: Edge,
@@ -106,7 +107,7 @@ pub(crate) struct LongRows {
     /// The row of the middle corner, at most `end`. There `lower` takes the place of the edge that ends.
     knee: i32,
     /// The end of the rows (exclusive).
-    end: i16,
+    end: i32,
     /// The edge that begins at the knee.
     lower: Edge,
     lower_side: Side,
@@ -121,7 +122,7 @@ enum Side {
     Right = 2,
 }
 
-const _: () = assert!(size_of::<Rows>() <= 72);
+const _: () = assert!(size_of::<Rows>() <= 76);
 
 impl Rows {
     /// Of no triangle.
@@ -134,10 +135,7 @@ impl Rows {
         let Some(edges) = SmallEdges::of(at) else {
             return Small::Not;
         };
-        if let Self::Long(_) = self {
-            *self = Self::NONE;
-        }
-        let Self::Short(spans) = self else {
+        let Some(spans) = self.short() else {
             return Small::Not;
         };
         if spans.start(&edges, window) { Small::Rows } else { Small::Hidden }
@@ -153,6 +151,43 @@ impl Rows {
         match self {
             Self::Long(rows) => rows.start(corners, window),
             Self::Short(_) => false,
+        }
+    }
+
+    /// Whether those of a small triangle are known to end in the window.
+    #[inline]
+    pub(crate) fn end_in_window(&self) -> bool {
+        matches!(self, Self::Short(spans) if spans.end_in_window())
+    }
+
+    /// Of a small triangle the row and the column of its table, its end in the table, and the rows of it that lie below the window; of
+    /// any other zeros.
+    #[inline]
+    pub(super) fn below(&self) -> ([i16; 2], u8, &[u32]) {
+        match self {
+            Self::Short(spans) => ([spans.row, spans.column], spans.last, spans.below()),
+            Self::Long(_) => ([0; 2], 0, &[]),
+        }
+    }
+
+    /// Goes on with these in the window below. Returns where they belong.
+    #[inline]
+    pub(super) fn go_on(&mut self, row_and_column: [i16; 2], last: u8, window: &Window) -> &mut [u32] {
+        match self.short() {
+            Some(spans) => spans.go_on(row_and_column, last, window),
+            None => &mut [],
+        }
+    }
+
+    /// As those of a small triangle.
+    #[inline(always)]
+    fn short(&mut self) -> Option<&mut Spans> {
+        if let Self::Long(_) = self {
+            *self = Self::NONE;
+        }
+        match self {
+            Self::Short(spans) => Some(spans),
+            Self::Long(_) => None,
         }
     }
 
@@ -187,7 +222,7 @@ impl LongRows {
         {
             end = row;
         }
-        (self.row, self.end) = (row, end as i16);
+        (self.row, self.end) = (row, end);
         if row >= end {
             return false;
         }
@@ -208,7 +243,7 @@ impl LongRows {
 
     /// A quick test for triangles that cover no pixel of a band: whether there is only one row, and that is empty.
     fn are_none(&self) -> bool {
-        let end = i32::from(self.end);
+        let end = self.end;
         self.row + 1 == end && end <= self.knee && self.left.x >= self.right.x
     }
 
@@ -227,7 +262,7 @@ impl LongRows {
     /// Lets the edge that begins at the knee take the place of the one that ends there. False at the end of the rows.
     #[inline(never)]
     fn reach_knee(&mut self) -> bool {
-        let end = i32::from(self.end);
+        let end = self.end;
         if self.row >= end {
             return false;
         }

@@ -22,6 +22,7 @@
 use crate::frame::{Window, first_center};
 use crate::math::recip::quotient_of_10_bits;
 use crate::num::IS_ARMV6M;
+use bytemuck::{must_cast_mut, must_cast_ref};
 
 /// The most rows of a small triangle, and its most columns.
 pub(crate) const WIDEST: usize = 32;
@@ -53,8 +54,8 @@ impl SmallEdges {
 /// The rows of a small triangle in a window. One serves all small triangles of a draw, one after another.
 #[derive(Clone, Debug)]
 pub(crate) struct Spans {
-    /// Of each row the first column and the end (exclusive), which may be less.
-    table: [[u8; 2]; WIDEST],
+    /// The table, two rows a word: so they are [kept](super::kept).
+    words: [u32; WIDEST / 2],
     /// The screen's row and column from which the table counts: [`WIDEST`] columns left of the triangle's
     /// [first pixel](super::triangle::TriangleSetup::first_pixel). So the column may be left of the screen.
     pub(crate) row: i16,
@@ -62,10 +63,19 @@ pub(crate) struct Spans {
     /// The rows of the table that lie in the window.
     start: u8,
     end: u8,
+    /// The end of the triangle's rows: the table has those below the window, too.
+    pub(super) last: u8,
 }
 
 impl Spans {
-    pub(crate) const NONE: Self = Self { table: [[0; 2]; WIDEST], row: 0, column: 0, start: 0, end: 0 };
+    pub(crate) const NONE: Self =
+        Self { words: [0; WIDEST / 2], row: 0, column: 0, start: 0, end: 0, last: 0 };
+
+    /// Of each row the first column and the end (exclusive), which may be less.
+    #[inline(always)]
+    fn table(&mut self) -> &mut [[u8; 2]; WIDEST] {
+        must_cast_mut(&mut self.words)
+    }
 
     /// Starts a triangle. False if it has no pixels in the window. (True does not mean that it has.)
     #[inline(always)]
@@ -79,11 +89,12 @@ impl Spans {
         let (mut first, mut next, mut last) = (0, rows_to(by), rows_to(cy));
         let (is_next_lower, is_last_lower) = (next > last, last > next);
         let mut end = next.max(last);
+        self.last = end as u8;
         let (top, bottom) = (window.rows.start - row, window.rows.end - row);
         if (-top | (bottom - end)) < 0 {
             first = top.max(0);
             end = end.min(bottom).max(first);
-            (next, last) = (next.clamp(first, end), last.clamp(first, end));
+            (next, last) = (next.max(first), last.max(first));
         }
         (self.start, self.end) = (first as u8, end as u8);
         if first >= end {
@@ -91,12 +102,13 @@ impl Spans {
         }
         let x = (ax & 15) + (WIDEST as i32 * 16 + 8);
         let corners = [[x, -above, first], [x + bx, by - above, next], [x + cx, cy - above, last]];
-        side::<1>(&mut self.table, &corners[0], &corners[1]);
-        side::<0>(&mut self.table, &corners[0], &corners[2]);
+        let table = self.table();
+        side::<1>(table, &corners[0], &corners[1]);
+        side::<0>(table, &corners[0], &corners[2]);
         if is_last_lower {
-            side::<1>(&mut self.table, &corners[1], &corners[2]);
+            side::<1>(table, &corners[1], &corners[2]);
         } else if is_next_lower {
-            side::<0>(&mut self.table, &corners[2], &corners[1]);
+            side::<0>(table, &corners[2], &corners[1]);
         }
         // All columns lie within 32 pixels of the top.
         if (column - window.columns.start) | (window.columns.end - column - 2 * WIDEST as i32 - 1) < 0 {
@@ -119,9 +131,8 @@ impl Spans {
         let within = |column: i32| (column - i32::from(self.column)).clamp(0, 255) as u8;
         let (left, right) = (within(window.columns.start), within(window.columns.end));
         let mut any = false;
-        for [start, end] in
-            self.table.get_mut(usize::from(self.start)..usize::from(self.end)).unwrap_or_default()
-        {
+        let rows = usize::from(self.start)..usize::from(self.last);
+        for [start, end] in self.table().get_mut(rows).unwrap_or_default() {
             (*start, *end) = ((*start).max(left), (*end).min(right));
             any |= *start < *end;
             // Not unrolled.
@@ -139,13 +150,13 @@ impl Spans {
     /// The first column and the end of a row of the table.
     #[inline]
     pub(crate) fn span(&self, row: usize) -> [u8; 2] {
-        self.table[row & (WIDEST - 1)]
+        must_cast_ref::<_, [[u8; 2]; WIDEST]>(&self.words)[row & (WIDEST - 1)]
     }
 
     /// Leaves of a row of the table what begins at a column. Returns the row behind it.
     #[inline]
     pub(crate) fn leave(&mut self, row: usize, column: usize) -> usize {
-        self.table[row & (WIDEST - 1)][0] = column as u8;
+        self.table()[row & (WIDEST - 1)][0] = column as u8;
         row + 1
     }
 
@@ -155,6 +166,31 @@ impl Spans {
         let [start, end] = self.span(row);
         let (first, column) = (i32::from(self.row), i32::from(self.column));
         [first + row as i32, column + i32::from(start), column + i32::from(end)]
+    }
+
+    /// Whether no row lies below the window.
+    #[inline]
+    pub(super) fn end_in_window(&self) -> bool {
+        self.last <= self.end
+    }
+
+    /// The rows below the window, two a word.
+    #[inline]
+    pub(super) fn below(&self) -> &[u32] {
+        self.words.get(usize::from(self.end) / 2..usize::from(self.last).div_ceil(2)).unwrap_or_default()
+    }
+
+    /// Goes on with those in the window below, which begins where the last one ended, of a triangle that was at this row and column, and
+    /// ended at `last`. Returns where they belong.
+    #[inline]
+    pub(super) fn go_on(&mut self, [row, column]: [i16; 2], last: u8, window: &Window) -> &mut [u32] {
+        let in_table = |at: i32, least: i32| (at - i32::from(row)).clamp(least, last.into());
+        let start = in_table(window.rows.start, 0);
+        let end = in_table(window.rows.end, start);
+        // One by one: together with the words it would be a copy of all.
+        (self.row, self.column) = (row, column);
+        (self.start, self.end, self.last) = (start as u8, end as u8, last);
+        self.words.get_mut(start as usize / 2..usize::from(last).div_ceil(2)).unwrap_or_default()
     }
 
     /// With one row only.

@@ -2,6 +2,7 @@
 
 use super::attribute::Attribute;
 use super::plane::Plane;
+use super::spans::WIDEST;
 use crate::frame::first_center;
 use crate::geometry::{ScreenVertex, is_gray};
 use crate::math::recip::Reciprocal;
@@ -122,6 +123,13 @@ impl TriangleSetup {
     #[inline(always)]
     pub(super) fn set_first_corner(&mut self, vertex: &ScreenVertex) {
         self.corners[0] = [vertex.x.to_bits(), vertex.y.to_bits()];
+    }
+
+    /// Sets the first corner so that the [first pixel](Self::first_pixel) of a small triangle is in the first row of a table of spans, and
+    /// [`WIDEST`] columns right of its first column.
+    #[inline(always)]
+    pub(super) fn set_first_pixel(&mut self, [row, column]: [i16; 2]) {
+        self.corners[0] = [(column + WIDEST as i16) << 4, row << 4];
     }
 
     /// The pixel where planes begin. Of a small triangle that of corner 0, or the one below if its centre lies above the corner; of any

@@ -7,7 +7,6 @@
 use super::entries::{CUT_OFF, KEPT, ListTriangle, ListVertex};
 use crate::geometry::Inputs;
 use crate::num::{I16F16, IS_ARMV6M, U1F31};
-use crate::raster::Words;
 use crate::scene::Mesh;
 use bytemuck::{must_cast, must_cast_slice_mut};
 use core::hint::black_box;
@@ -55,7 +54,7 @@ pub(super) fn move_together(
     let mut index = first;
     for from in own.clone() {
         // As words, of which several are moved at a time.
-        let slots: &mut [Words] = must_cast_slice_mut(up_to_own);
+        let slots: &mut [[u32; 4]] = must_cast_slice_mut(up_to_own);
         let Some(&words) = slots.get(from) else {
             break;
         };

@@ -21,7 +21,7 @@ use crate::frame::{Background, Band, DepthFormat, PixelFormat, Window};
 use crate::geometry::{Count, Cull, MOST_CORNERS, ScreenVertex};
 use crate::math::Pose;
 use crate::scene::{Mesh, Vertex, Viewport};
-use crate::shade::{InFog, Look, Surface};
+use crate::shade::{InFog, Look, Memory, Surface};
 use core::fmt;
 use embedded_graphics::geometry::Dimensions;
 use embedded_graphics::primitives::Rectangle;
@@ -236,6 +236,7 @@ fn render<F: PixelFormat, D: DepthFormat>(
     let rows = steps_of(&window);
     // The first row of the band below, in units of 4.
     let below = window.rows.end >> ROWS_LOG2;
+    let end = window.rows.end;
     let within = |draw: &Draw<'_, F, D>| window.clone().within(&draw.viewport);
     let kind = |draw: &Draw<'_, F, D>| [draw.is_orthographic, draw.is_gray];
     // Its first triangle, and how many it has.
@@ -257,15 +258,25 @@ fn render<F: PixelFormat, D: DepthFormat>(
             draw_folded(view, triangle, draw, &mut raster);
             continue;
         }
-        let is_set_up = kept.has(id);
-        if is_set_up {
-            kept.take(&mut raster.setup);
-            view.positions(triangle, &mut corners);
-        } else {
+        let Raster { setup, needs, target, .. } = &mut raster;
+        let Memory { rows, window, .. } = &mut target.memory;
+        let is_seen = if !kept.has(id) {
             view.corners(triangle, draw.look.traits.inputs(), draw.vertices, &mut corners);
-        }
-        if raster.draw_clockwise(corners.each_ref(), is_set_up) && i32::from(triangle.rows[1]) >= below {
-            kept.put(id, &raster.setup, &raster.needs);
+            raster.draw_clockwise(corners.each_ref())
+        } else if kept.take(setup, rows, needs, window) {
+            raster.paint();
+            true
+        } else {
+            view.positions(triangle, &mut corners);
+            raster.draw_set_up(corners.each_ref())
+        };
+        if is_seen && i32::from(triangle.rows[1]) >= below {
+            let Raster { setup, needs, target, .. } = &raster;
+            let Memory { rows, window, .. } = &target.memory;
+            // Where a viewport ends the next window does not begin where this one does.
+            if window.rows.end == end {
+                kept.put(id, setup, rows, needs);
+            }
         }
     }
 }

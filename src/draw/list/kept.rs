@@ -5,7 +5,7 @@
 //! - Assumes: bands are drawn from the top down, and triangles in the same order in each of them.
 //!
 //! It is a queue: what a band takes it takes in the order in which the band before put it in, and puts it in again for the next
-//! one. An entry is a few slots side by side. The first of them has the triangle's number.
+//! one. An entry is a few words side by side. The first of them has the triangle's number.
 //!
 //! ```text
 //!   slots   ░░░░░░ first ▓▓▓▓▓▓▓▓▓▓ last ░░░░░░░░       or       ▓▓▓▓ last ░░░░░░░░ first ▓▓▓▓▓▓▓▓ end ░
@@ -14,13 +14,14 @@
 //! A triangle for which there is no room is set up again in the next band, as are all if the list has no memory left.
 
 use super::entries::ListVertex;
-use crate::raster::{Needs, TriangleSetup, Words, number_and_count};
+use crate::frame::Window;
+use crate::raster::{Needs, Rows, TriangleSetup, has_rows, number};
 use bytemuck::must_cast_slice_mut;
 
 /// A queue of set-ups.
 pub(super) struct Kept<'l> {
-    slots: &'l mut [Words],
-    /// The number of the triangle that comes first, or [`NONE`].
+    words: &'l mut [u32],
+    /// The first word of the triangle that comes first, or [`NONE`].
     next: u32,
     /// Where it is.
     first: usize,
@@ -30,69 +31,79 @@ pub(super) struct Kept<'l> {
     end: usize,
 }
 
-/// No triangle.
+/// No triangle: there are less than 65 535.
 const NONE: u32 = u32::MAX;
 
 impl<'l> Kept<'l> {
     /// In these slots, whatever they hold.
     pub(super) fn new(slots: &'l mut [ListVertex]) -> Self {
-        Self { next: NONE, first: 0, last: 0, end: slots.len(), slots: must_cast_slice_mut(slots) }
+        let words: &mut [u32] = must_cast_slice_mut(slots);
+        Self { next: NONE, first: 0, last: 0, end: words.len(), words }
     }
 
     /// Whether a triangle comes first.
     #[inline]
     pub(super) fn has(&self, id: u16) -> bool {
-        self.next == u32::from(id)
+        number(self.next) == u32::from(id)
     }
 
-    /// Takes the first one out.
+    /// Takes the first one out. False if its rows were not kept.
     #[inline(always)]
-    pub(super) fn take(&mut self, setup: &mut TriangleSetup) {
-        let Some(slots) = self.slots.get(self.first..) else {
-            return;
+    pub(super) fn take(
+        &mut self,
+        setup: &mut TriangleSetup,
+        rows: &mut Rows,
+        needs: &Needs,
+        window: &Window,
+    ) -> bool {
+        let has_rows = has_rows(self.next);
+        let from = self.words.get(self.first..).unwrap_or_default();
+        let Some(left) = setup.take(rows, needs, window, from) else {
+            return false;
         };
-        let Some(head) = slots.first() else {
-            return;
-        };
-        let (_, count) = number_and_count(head);
-        setup.read(slots.get(..count).unwrap_or_default());
-        self.first += count;
+        self.first = self.words.len() - left.len();
         if self.first == self.last {
             self.next = NONE;
-            return;
+            return has_rows;
         }
         if self.first == self.end {
-            (self.first, self.end) = (0, self.slots.len());
+            (self.first, self.end) = (0, self.words.len());
         }
-        if let Some(head) = self.slots.get(self.first) {
-            self.next = number_and_count(head).0;
+        if let Some(&word) = self.words.get(self.first) {
+            self.next = word;
         }
+        has_rows
     }
 
     /// Puts one in, if there is room.
     #[inline(always)]
-    pub(super) fn put(&mut self, id: u16, setup: &TriangleSetup, needs: &Needs) {
-        if setup.planes.is_sliver() {
+    pub(super) fn put(&mut self, id: u16, setup: &TriangleSetup, rows: &Rows, needs: &Needs) {
+        if setup.planes.is_sliver() || rows.end_in_window() {
             return;
         }
-        let count = setup.words(needs);
         if self.next == NONE {
-            (self.first, self.last, self.end) = (0, 0, self.slots.len());
+            (self.first, self.last, self.end) = (0, 0, self.words.len());
         }
-        let most = if self.last < self.first { self.first - 1 } else { self.slots.len() };
-        if self.last + count > most {
-            // From the start again?
-            if self.last < self.first || count >= self.first {
-                return;
+        let is_behind = self.last >= self.first;
+        let most = if is_behind { self.words.len() } else { self.first - 1 };
+        let Some(to) = self.words.get_mut(self.last..most) else {
+            return;
+        };
+        let mut last = setup.keep(id, rows, needs, to).map(|left| most - left.len());
+        if last.is_none() && is_behind {
+            // From the start again.
+            let most = self.first.saturating_sub(1);
+            let to = self.words.get_mut(..most).unwrap_or_default();
+            last = setup.keep(id, rows, needs, to).map(|left| most - left.len());
+            if last.is_some() {
+                self.end = self.last;
             }
-            (self.end, self.last) = (self.last, 0);
         }
-        if let Some(slots) = self.slots.get_mut(self.last..self.last + count) {
-            setup.write(id, slots);
-        }
-        self.last += count;
-        if self.next == NONE {
-            self.next = id.into();
+        if let Some(last) = last {
+            if self.next == NONE {
+                self.next = self.words.first().copied().unwrap_or(NONE);
+            }
+            self.last = last;
         }
     }
 }
@@ -101,7 +112,7 @@ impl<'l> Kept<'l> {
 mod tests {
     use super::*;
     use crate::geometry::Inputs;
-    use crate::raster::{InputCode, Packing, Planes, Straight};
+    use crate::raster::{InputCode, LongRows, Packing, Planes, Straight};
     use proptest::prelude::*;
     use std::vec;
 
@@ -141,14 +152,16 @@ mod tests {
             garbage in any::<u32>(),
         ) {
             // What looks like an entry of any of them.
-            let garbage = bytemuck::must_cast([0, 0, 0, (garbage % 60) | 6 << 24 | 3 << 30]);
+            let garbage = bytemuck::must_cast([(garbage % 60) | 3 << 30; 4]);
             let (slots, needs) = (&mut vec![garbage; room], needs());
+            // Of a triangle that is not small: its rows are not kept. (Of others, see `raster::kept`.)
+            let (rows, window) = (Rows::Long(LongRows::default()), Window { columns: 0..1, rows: 0..1 });
             let mut kept = Kept::new(slots);
             let (mut found, mut looked_for) = (0, 0);
             for band in 0..24 {
                 for (id, &(top, bands)) in triangles.iter().enumerate() {
-                    let rows = top..top + bands;
-                    if !rows.contains(&band) {
+                    let reaches = top..top + bands;
+                    if !reaches.contains(&band) {
                         continue;
                     }
                     let id = id as u16;
@@ -158,7 +171,7 @@ mod tests {
                         prop_assert!(band > top);
                         found += 1;
                         setup = TriangleSetup::new();
-                        kept.take(&mut setup);
+                        prop_assert!(!kept.take(&mut setup, &mut rows.clone(), &needs, &window));
                     }
                     let right = of_triangle(id);
                     let colors = if right.gray { 1 } else { 3 };
@@ -166,17 +179,17 @@ mod tests {
                         (setup.z.origin, setup.attributes[1 + colors].plane.origin, setup.planes, setup.gray)
                     };
                     prop_assert_eq!(marks(&setup), marks(&right));
-                    if band + 1 < rows.end {
-                        kept.put(id, &setup, &needs);
+                    if band + 1 < reaches.end {
+                        kept.put(id, &setup, &rows, &needs);
                     }
                 }
             }
             prop_assert!(found <= looked_for);
-            // An entry takes 13 slots at most: with room for all of two bands and a gap none is lost.
-            if room > (2 * triangles.len() + 1) * 13 {
+            // An entry takes 52 words at most: with room for all of two bands and a gap none is lost.
+            if room * 4 > (2 * triangles.len() + 1) * 52 {
                 prop_assert_eq!(found, looked_for);
             }
-            if room < 6 {
+            if room < 4 {
                 prop_assert_eq!(found, 0);
             }
         }
