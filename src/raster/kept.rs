@@ -244,6 +244,7 @@ mod tests {
             color_step: 1,
             depth: true,
             gray: false,
+            rows_below: true,
         }
     }
 
@@ -328,7 +329,7 @@ mod tests {
             let middle = top + heights[0];
             let windows = [top..middle, middle..middle + heights[1]].map(|rows| Window { columns: columns.clone(), rows });
             let mut above = Rows::NONE;
-            prop_assume!(matches!(above.start_small(&first, &windows[0]), Small::Rows));
+            prop_assume!(matches!(above.start_small(&first, &windows[0], true), Small::Rows));
             let needs = needs(Inputs::UvColor);
             let mut setup = any_setup(&words, 1 << 3);
             setup.set_first_corner(first[0]);
@@ -343,7 +344,7 @@ mod tests {
                 prop_assert_eq!(read.first_pixel(), setup.first_pixel());
             }
             let mut anew = Rows::NONE;
-            let is_seen = matches!(anew.start_small(&first, &windows[1]), Small::Rows);
+            let is_seen = matches!(anew.start_small(&first, &windows[1], false), Small::Rows);
             let expected = if is_seen { rows_of(anew, &windows[1]) } else { vec![] };
             prop_assert_eq!(rows_of(below, &windows[1]), expected);
         }

@@ -92,6 +92,8 @@ pub(crate) struct Needs {
     pub(crate) depth: bool,
     /// Whether all colours are known to be grey.
     pub(crate) gray: bool,
+    /// Whether the rows of a small triangle that lie below the window are found as well: in the next one they are [kept](super::kept).
+    pub(crate) rows_below: bool,
 }
 
 const _: () = assert!(size_of::<Needs>() <= 24 + size_of::<usize>());

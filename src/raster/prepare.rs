@@ -26,7 +26,7 @@ impl TriangleSetup {
         needs: &Needs,
     ) -> bool {
         let from_top = from_top(triangle.vertices);
-        match rows.start_small(&from_top, window) {
+        match rows.start_small(&from_top, window, needs.rows_below) {
             Small::Hidden => return false,
             Small::Rows => {
                 self.set_first_corner(from_top[0]);

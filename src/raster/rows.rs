@@ -128,9 +128,14 @@ impl Rows {
     /// Of no triangle.
     pub(crate) const NONE: Self = Self::Short(Spans::NONE);
 
-    /// Starts a triangle if it is small, from its uppermost corner on.
+    /// Starts a triangle if it is small, from its uppermost corner on, and finds its rows below the window, too, if it has to.
     #[inline(never)]
-    pub(super) fn start_small(&mut self, vertices: &[&ScreenVertex; 3], window: &Window) -> Small {
+    pub(super) fn start_small(
+        &mut self,
+        vertices: &[&ScreenVertex; 3],
+        window: &Window,
+        and_below: bool,
+    ) -> Small {
         let at = vertices.map(position);
         let Some(edges) = SmallEdges::of(at) else {
             return Small::Not;
@@ -138,7 +143,7 @@ impl Rows {
         let Some(spans) = self.short() else {
             return Small::Not;
         };
-        if spans.start(&edges, window) { Small::Rows } else { Small::Hidden }
+        if spans.start(&edges, window, and_below) { Small::Rows } else { Small::Hidden }
     }
 
     /// Starts a triangle of any size, whose corners run clockwise from the uppermost on. False if it has no rows, or only one, and that is empty. (True

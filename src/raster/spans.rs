@@ -63,7 +63,7 @@ pub(crate) struct Spans {
     /// The rows of the table that lie in the window.
     start: u8,
     end: u8,
-    /// The end of the triangle's rows: the table has those below the window, too.
+    /// The end of the table, which may have rows below the window.
     pub(super) last: u8,
 }
 
@@ -79,7 +79,7 @@ impl Spans {
 
     /// Starts a triangle. False if it has no pixels in the window. (True does not mean that it has.)
     #[inline(always)]
-    pub(crate) fn start(&mut self, edges: &SmallEdges, window: &Window) -> bool {
+    pub(crate) fn start(&mut self, edges: &SmallEdges, window: &Window, and_below: bool) -> bool {
         let SmallEdges { top: [ax, ay], next: [bx, by], last: [cx, cy] } = *edges;
         let (row, column) = (first_center(ay), (ax >> 4) - WIDEST as i32);
         (self.row, self.column) = (row as i16, column as i16);
@@ -89,14 +89,17 @@ impl Spans {
         let (mut first, mut next, mut last) = (0, rows_to(by), rows_to(cy));
         let (is_next_lower, is_last_lower) = (next > last, last > next);
         let mut end = next.max(last);
-        self.last = end as u8;
+        let mut last_row = end;
         let (top, bottom) = (window.rows.start - row, window.rows.end - row);
         if (-top | (bottom - end)) < 0 {
             first = top.max(0);
             end = end.min(bottom).max(first);
-            (next, last) = (next.max(first), last.max(first));
+            if !and_below {
+                last_row = end;
+            }
+            (next, last) = (next.min(last_row).max(first), last.min(last_row).max(first));
         }
-        (self.start, self.end) = (first as u8, end as u8);
+        (self.start, self.end, self.last) = (first as u8, end as u8, last_row as u8);
         if first >= end {
             return false;
         }

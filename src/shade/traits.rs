@@ -80,6 +80,7 @@ impl Traits {
             color_step: F::COLOR_STEP,
             depth,
             gray: is_gray || self.is_gray,
+            rows_below: false,
         }
     }
 }

@@ -41,6 +41,12 @@ impl<'l> Kept<'l> {
         Self { next: NONE, first: 0, last: 0, end: words.len(), words }
     }
 
+    /// Whether it may hold anything.
+    #[inline]
+    pub(super) fn has_room(&self) -> bool {
+        !self.words.is_empty()
+    }
+
     /// Whether a triangle comes first.
     #[inline]
     pub(super) fn has(&self, id: u16) -> bool {
@@ -78,7 +84,7 @@ impl<'l> Kept<'l> {
     /// Puts one in, if there is room.
     #[inline(always)]
     pub(super) fn put(&mut self, id: u16, setup: &TriangleSetup, rows: &Rows, needs: &Needs) {
-        if setup.planes.is_sliver() || rows.end_in_window() {
+        if !self.has_room() || setup.planes.is_sliver() || rows.end_in_window() {
             return;
         }
         if self.next == NONE {
@@ -129,6 +135,7 @@ mod tests {
             color_step: 1,
             depth: true,
             gray: false,
+            rows_below: true,
         }
     }
 
