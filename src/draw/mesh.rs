@@ -23,17 +23,16 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
 ) {
     stats.count(|stats| &mut stats.meshes);
     let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
-    let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
-    let window = band.window().within(&projection.viewport);
     let mut assembler = Assembler {
         mesh,
         placing: Placing::ZERO,
         coloring: surface.coloring.unlit(),
-        cull,
+        cull: surface.cull,
         light_face: surface.coloring.light_face(sight.lights),
     };
-    assembler.placing.set(projection, camera, pose);
-    if window.is_empty() || !assembler.placing.sees(projection, mesh.bounds()) {
+    let is_seen = assembler.stand(projection, camera, pose);
+    let window = band.window().within(&projection.viewport);
+    if window.is_empty() || !is_seen {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
@@ -58,7 +57,7 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
             Clipped::None => return,
             Clipped::Uncut => assembler.cut(&mut cache, stats),
             Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
-            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, assembler.cull, &mut runs, stats),
         }
     }
 }

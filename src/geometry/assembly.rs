@@ -15,8 +15,9 @@ use super::screen::ScreenVertex;
 use super::stats::{Count, Stats};
 use super::vertex_colors::{VertexColors, dim};
 use super::whole::Placing;
+use crate::math::Pose;
 use crate::num::I16F16;
-use crate::scene::{Mesh, Triangles, Vertex};
+use crate::scene::{Mesh, Projection, Triangles, Vertex};
 
 /// How many vertices the cache holds, the newest taking the place of the oldest. As many as a clipped triangle may have corners,
 /// since clipping makes its polygon in the cache's memory.
@@ -149,6 +150,17 @@ pub(crate) struct Assembler<'a> {
 }
 
 impl Assembler<'_> {
+    /// Makes one that is of no pose yet that of a mesh in this pose before a camera: where its vertices are placed, and which way it
+    /// faces. False if nothing of the mesh may be seen.
+    ///
+    /// Not inlined: what it takes is not on the stack while pixels are drawn.
+    #[inline(never)]
+    pub(crate) fn stand(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) -> bool {
+        self.cull = self.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
+        self.placing.set(projection, camera, pose);
+        self.placing.sees(projection, self.mesh.bounds())
+    }
+
     /// The next triangle that is not culled; `None` at the end, or where [one is clipped](VertexCache::clipped). Of that, whoever asks
     /// says piece by piece what is [next](VertexCache::set_piece).
     ///
