@@ -11,6 +11,7 @@ use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
+use core::hint::black_box;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
@@ -53,11 +54,12 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
                 stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
             }
         }
-        match cache.clipped {
+        // What is rare is reached through hidden references, whose addresses are not kept on the stack in the meantime.
+        match black_box(&cache).clipped {
             Clipped::None => return,
             Clipped::Uncut => assembler.cut(&mut cache, stats),
             Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
-            Clipped::Folded(_) => raster.find_run(&mut cache, assembler.cull, &mut runs, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, black_box(&assembler).cull, &mut runs, stats),
         }
     }
 }
