@@ -102,8 +102,15 @@ impl Clip {
         flat: 0,
     };
 
-    #[inline(never)]
     pub(crate) fn new(projection: &Projection, unit_bits: i32) -> Self {
+        let mut clip = Self::ZERO;
+        clip.set(projection, unit_bits);
+        clip
+    }
+
+    /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied.
+    #[inline(never)]
+    pub(super) fn set(&mut self, projection: &Projection, unit_bits: i32) {
         let near = in_units(projection.near, unit_bits, true);
         let far =
             if projection.far == I16F16::MAX { i32::MAX } else { in_units(projection.far, unit_bits, false) };
@@ -115,18 +122,15 @@ impl Clip {
             (projection.near.to_bits() << (zeros - 1), zeros + 16 - unit_bits)
         };
         let least = least_w(projection, unit_bits);
-        Self {
-            far,
-            least: near.max(least),
-            is_fine: near < least,
-            whole: None,
-            planes: [projection.near, projection.far],
-            depth_mantissa,
-            depth_zeros: depth_zeros as i8,
-            scale: (focal_log2(projection.focal) + 4) as i8,
-            center: projection.center.map(|at| (at << FINER) + (1 << (FINER - 1))),
-            flat: if projection.orthographic { unit_bits as i8 } else { 0 },
-        }
+        self.far = far;
+        self.least = near.max(least);
+        self.is_fine = near < least;
+        self.planes = [projection.near, projection.far];
+        self.depth_mantissa = depth_mantissa;
+        self.depth_zeros = depth_zeros as i8;
+        self.scale = (focal_log2(projection.focal) + 4) as i8;
+        self.center = projection.center.map(|at| (at << FINER) + (1 << (FINER - 1)));
+        self.flat = if projection.orthographic { unit_bits as i8 } else { 0 };
     }
 
     /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond

@@ -55,7 +55,7 @@ impl Placing {
     #[inline]
     pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
         self.to_clip.set(projection, camera, pose);
-        self.clip = Clip::new(projection, self.to_clip.unit_bits());
+        self.clip.set(projection, self.to_clip.unit_bits());
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.
