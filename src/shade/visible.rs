@@ -9,7 +9,9 @@
 use super::cover::Cover;
 use super::memory::Memory;
 use crate::frame::{DepthFormat, PixelFormat};
+use crate::num::IS_ARMV6M;
 use crate::raster::{first_visible, visible};
+use core::hint::black_box;
 
 /// What draws a run of visible pixels from (x, y) on.
 pub(super) trait DrawRun<W> {
@@ -30,39 +32,56 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
     cover: Cover<'_, '_, F, D>,
     mut runs: impl DrawRun<F::Word>,
 ) {
+    if D::ALWAYS_PASSES {
+        return draw_all(cover, runs);
+    }
     let Cover { setup, target } = cover;
-    let Memory { rows, window, origin, width, pixels, depth } = &mut target.memory;
+    loop {
+        // On Armv6-M it is hidden, so that what is in it is read in each row, and not kept on the stack besides: 40 bytes, for 15
+        // cycles a row.
+        let target = if IS_ARMV6M { black_box(&mut *target) } else { &mut *target };
+        let Memory { rows, window, origin, width, pixels, depth } = &mut target.memory;
+        let Some((y, start, end)) = rows.next(window) else {
+            return;
+        };
+        if start >= end {
+            continue;
+        }
+        let first = origin.wrapping_add((y as usize).wrapping_mul(*width)).wrapping_add(start as usize);
+        let count = (end - start) as usize;
+        // So that both are known to be as long.
+        let length = pixels.len().min(depth.len());
+        let (Some(pixels), Some(depth)) = (pixels.get_mut(..length), depth.get_mut(..length)) else {
+            return;
+        };
+        // In two steps: the end of a range is checked more dearly.
+        let Some(pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+            continue;
+        };
+        let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
+            continue;
+        };
+        let z = setup.near_w_of(start, y, count);
+        let passed = first_visible::<D, STORES>(depth, z);
+        if passed == Some(count) {
+            runs.draw_run(start, y, pixels);
+        } else {
+            draw_visible::<STORES, F::Word, D>(&mut runs.again(), [start, y], pixels, (depth, z), passed);
+        }
+    }
+}
+
+/// Draws each row: there are no depths.
+#[inline(always)]
+fn draw_all<F: PixelFormat, D: DepthFormat>(cover: Cover<'_, '_, F, D>, mut runs: impl DrawRun<F::Word>) {
+    let Memory { rows, window, origin, width, pixels, .. } = &mut cover.target.memory;
     let (origin, width) = (*origin, *width);
-    // So that both are known to be as long.
-    let length = if D::ALWAYS_PASSES { pixels.len() } else { pixels.len().min(depth.len()) };
-    let Some(pixels) = pixels.get_mut(..length) else {
-        return;
-    };
-    let depth = depth.get_mut(..length).unwrap_or_default();
     rows.each(window, |y, start, end| {
         let first = origin.wrapping_add((y as usize).wrapping_mul(width)).wrapping_add(start as usize);
         let count = (end - start) as usize;
-        // In two steps: the end of a range is checked more dearly.
-        let Some(pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
-            return;
-        };
-        if !D::ALWAYS_PASSES {
-            let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
-                return;
-            };
-            let z = setup.near_w_of(start, y, count);
-            let passed = first_visible::<D, STORES>(depth, z);
-            if passed != Some(count) {
-                return draw_visible::<STORES, F::Word, D>(
-                    &mut runs.again(),
-                    [start, y],
-                    pixels,
-                    (depth, z),
-                    passed,
-                );
-            }
+        if let Some(pixels) = pixels.get_mut(first..).and_then(|rest| rest.get_mut(..count)) {
+            runs.draw_run(start, y, pixels);
         }
-        runs.draw_run(start, y, pixels);
     });
 }
 
