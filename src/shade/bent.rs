@@ -329,8 +329,7 @@ mod tests {
                 }
             }
             Way::Chords => {
-                let mut curve =
-                    Curve { w: u32::MAX, w_step: 0u32.wrapping_sub(w_step), ..Curve::default() };
+                let mut curve = Curve { w: u32::MAX, w_step: 0u32.wrapping_sub(w_step), ..Curve::default() };
                 curve.set_distances(false, steps);
                 let mut chords = Chords::new(&curve);
                 let mut n = 0;

@@ -47,8 +47,11 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
         if start >= end {
             continue;
         }
-        let first = origin.wrapping_add((y as usize).wrapping_mul(*width)).wrapping_add(start as usize);
         let count = (end - start) as usize;
+        // Early or late, as it takes fewer registers.
+        let z = || setup.near_w_of(start, y, count);
+        let early = IS_ARMV6M.then(z);
+        let first = origin.wrapping_add((y as usize).wrapping_mul(*width)).wrapping_add(start as usize);
         // So that both are known to be as long.
         let length = pixels.len().min(depth.len());
         let (Some(pixels), Some(depth)) = (pixels.get_mut(..length), depth.get_mut(..length)) else {
@@ -61,7 +64,7 @@ pub(super) fn draw_rows<const STORES: bool, F: PixelFormat, D: DepthFormat>(
         let Some(depth) = depth.get_mut(first..).and_then(|rest| rest.get_mut(..count)) else {
             continue;
         };
-        let z = setup.near_w_of(start, y, count);
+        let z = early.unwrap_or_else(z);
         let passed = first_visible::<D, STORES>(depth, z);
         if passed == Some(count) {
             runs.draw_run(start, y, pixels);
