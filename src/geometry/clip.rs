@@ -56,6 +56,8 @@ pub(crate) struct Clip {
     pub(super) center: [i32; 2],
     /// The fraction bits of clip coordinates if w does not divide, else 0.
     flat: i8,
+    /// The fraction bits of clip coordinates.
+    unit_bits: i8,
 }
 
 /// How far products with 1/w are shifted where a mesh is whole, for a w without leading zeros.
@@ -100,6 +102,7 @@ impl Clip {
         scale: 0,
         center: [0; 2],
         flat: 0,
+        unit_bits: 0,
     };
 
     pub(crate) fn new(projection: &Projection, unit_bits: i32) -> Self {
@@ -130,17 +133,18 @@ impl Clip {
         self.depth_zeros = depth_zeros as i8;
         self.scale = (focal_log2(projection.focal) + 4) as i8;
         self.center = projection.center.map(|at| (at << FINER) + (1 << (FINER - 1)));
-        self.flat = if projection.orthographic { unit_bits as i8 } else { 0 };
+        self.unit_bits = unit_bits as i8;
+        self.flat = if projection.orthographic { self.unit_bits } else { 0 };
     }
 
     /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond
     /// all that there is. A plane at the format's end is none: a mesh that stands there reaches further.
     #[inline(never)]
-    pub(super) fn distance_of(to_clip: &ToClip, plane: I16F16) -> i64 {
+    pub(super) fn distance_of(&self, plane: I16F16) -> i64 {
         if plane == I16F16::MAX {
             return 1 << 46;
         }
-        (i64::from(plane.to_bits()) << (to_clip.unit_bits() + FINE - 16)).min(1 << 46)
+        (i64::from(plane.to_bits()) << (i32::from(self.unit_bits) + FINE - 16)).min(1 << 46)
     }
 
     /// Screen = centre + x/w · 2^this in 1/16 px.
@@ -177,7 +181,7 @@ impl Clip {
     ) -> Option<[i32; 3]> {
         let center @ [.., w] = to_clip.place_all(bounds.center);
         let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
-        let [near, far] = [projection.near, projection.far].map(|at| Self::distance_of(to_clip, at) >> FINE);
+        let [near, far] = [projection.near, projection.far].map(|at| self.distance_of(at) >> FINE);
         let [before, beyond] = [near - i64::from(w), i64::from(w) - far];
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
         if projection.near >= projection.far

@@ -181,7 +181,7 @@ impl Clip {
         to: &mut [ScreenVertex; MOST_CORNERS],
         upper: &mut Upper,
     ) -> (usize, bool) {
-        let planes = self.planes.map(|plane| Split::new(Self::distance_of(to_clip, plane)));
+        let planes = self.planes.map(|plane| Split::new(self.distance_of(plane)));
         let mut polygon = Polygon { vertices: to, lower: [[0; 3]; MOST_CORNERS], upper, count: 3, planes };
         let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
