@@ -48,7 +48,7 @@ pub struct TriangleSetup {
     /// first bit set; the least that it is at a corner; and what straight lines of v keep from the ends of its range.
     pub(super) bends: [[i32; 3]; 2],
     /// The mantissa of 1 / (twice the area in 1/256 px²); not of small triangles.
-    area: i32,
+    pub(super) area: i32,
     /// near/w with 31 fraction bits; for depth.
     pub(crate) z: Plane,
     /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small triangle the uppermost. Of a small one that is neither
@@ -78,7 +78,7 @@ pub struct TriangleSetup {
     /// Of a bent one: whether its planes may leave the range of the corners by more than [`TriangleSetup::contract`] allows for.
     pub(crate) is_extreme: bool,
     /// The leading zeros of twice the area in 1/256 px²; not of small triangles.
-    area_zeros: u8,
+    pub(super) area_zeros: u8,
 }
 
 const _: () = assert!(size_of::<TriangleSetup>() <= 224);
