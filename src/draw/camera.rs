@@ -94,10 +94,10 @@ impl Camera {
 
 /// A point of the world on the screen.
 pub(crate) fn project(projection: &Projection, camera: &Pose, point: Vec3) -> Option<ScreenVertex> {
-    let to_clip = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
+    let (to_clip, unit_bits) = ToClip::new(projection, camera, &Pose::IDENTITY.at(point));
     let mut at = [ScreenVertex::default(); MOST_CORNERS];
     // Clipping places it if it is too near for 32 bits, and leaves nothing of it if it is cut off.
-    let (clip, corner) = (Clip::new(projection, to_clip.unit_bits()), &Vertex::default());
+    let (clip, corner) = (Clip::new(projection, unit_bits), &Vertex::default());
     let (count, _) = clip.cut(&to_clip, [corner; 3], &mut at, &mut Upper::default());
     at.first().filter(|_| count > 0).copied()
 }

@@ -11,6 +11,7 @@ use crate::geometry::{Assembler, Clipped, Count, Placing, VertexCache};
 use crate::math::Pose;
 use crate::scene::Mesh;
 use crate::shade::Surface;
+use core::hint::black_box;
 
 /// Draws a mesh in one pose before one camera, from vertex to pixel.
 pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
@@ -23,17 +24,16 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
 ) {
     stats.count(|stats| &mut stats.meshes);
     let (projection, camera) = (sight.camera.projection(), sight.camera.placement());
-    let cull = surface.cull.of_mesh(camera.is_mirrored() != pose.is_mirrored());
-    let window = band.window().within(&projection.viewport);
     let mut assembler = Assembler {
         mesh,
         placing: Placing::ZERO,
         coloring: surface.coloring.unlit(),
-        cull,
+        cull: surface.cull,
         light_face: surface.coloring.light_face(sight.lights),
     };
-    assembler.placing.set(projection, camera, pose);
-    if window.is_empty() || !assembler.placing.sees(projection, mesh.bounds()) {
+    let is_seen = assembler.stand(projection, camera, pose);
+    let window = band.window().within(&projection.viewport);
+    if window.is_empty() || !is_seen {
         stats.count(|stats| &mut stats.meshes_out_of_sight);
         return;
     }
@@ -54,11 +54,12 @@ pub(crate) fn draw<F: PixelFormat, D: DepthFormat>(
                 stats.count(|stats| if is_drawn { &mut stats.drawn } else { &mut stats.out_of_sight });
             }
         }
-        match cache.clipped {
+        // What is rare is reached through hidden references, whose addresses are not kept on the stack in the meantime.
+        match black_box(&cache).clipped {
             Clipped::None => return,
             Clipped::Uncut => assembler.cut(&mut cache, stats),
             Clipped::Pieces(_) => assembler.find_piece(&mut cache, stats),
-            Clipped::Folded(_) => raster.find_run(&mut cache, cull, &mut runs, stats),
+            Clipped::Folded(_) => raster.find_run(&mut cache, black_box(&assembler).cull, &mut runs, stats),
         }
     }
 }

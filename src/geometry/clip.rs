@@ -56,6 +56,8 @@ pub(crate) struct Clip {
     pub(super) center: [i32; 2],
     /// The fraction bits of clip coordinates if w does not divide, else 0.
     flat: i8,
+    /// The fraction bits of clip coordinates.
+    unit_bits: i8,
 }
 
 /// How far products with 1/w are shifted where a mesh is whole, for a w without leading zeros.
@@ -100,10 +102,18 @@ impl Clip {
         scale: 0,
         center: [0; 2],
         flat: 0,
+        unit_bits: 0,
     };
 
-    #[inline(never)]
     pub(crate) fn new(projection: &Projection, unit_bits: i32) -> Self {
+        let mut clip = Self::ZERO;
+        clip.set(projection, unit_bits);
+        clip
+    }
+
+    /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied.
+    #[inline(never)]
+    pub(super) fn set(&mut self, projection: &Projection, unit_bits: i32) {
         let near = in_units(projection.near, unit_bits, true);
         let far =
             if projection.far == I16F16::MAX { i32::MAX } else { in_units(projection.far, unit_bits, false) };
@@ -115,28 +125,26 @@ impl Clip {
             (projection.near.to_bits() << (zeros - 1), zeros + 16 - unit_bits)
         };
         let least = least_w(projection, unit_bits);
-        Self {
-            far,
-            least: near.max(least),
-            is_fine: near < least,
-            whole: None,
-            planes: [projection.near, projection.far],
-            depth_mantissa,
-            depth_zeros: depth_zeros as i8,
-            scale: (focal_log2(projection.focal) + 4) as i8,
-            center: projection.center.map(|at| (at << FINER) + (1 << (FINER - 1))),
-            flat: if projection.orthographic { unit_bits as i8 } else { 0 },
-        }
+        self.far = far;
+        self.least = near.max(least);
+        self.is_fine = near < least;
+        self.planes = [projection.near, projection.far];
+        self.depth_mantissa = depth_mantissa;
+        self.depth_zeros = depth_zeros as i8;
+        self.scale = (focal_log2(projection.focal) + 4) as i8;
+        self.center = projection.center.map(|at| (at << FINER) + (1 << (FINER - 1)));
+        self.unit_bits = unit_bits as i8;
+        self.flat = if projection.orthographic { self.unit_bits } else { 0 };
     }
 
     /// A plane's w in clip units, with [`FINE`] bits more: exact, as clip units are 2⁻¹⁰ or less, and at most 2⁴⁶, which is beyond
     /// all that there is. A plane at the format's end is none: a mesh that stands there reaches further.
     #[inline(never)]
-    pub(super) fn distance_of(to_clip: &ToClip, plane: I16F16) -> i64 {
+    pub(super) fn distance_of(&self, plane: I16F16) -> i64 {
         if plane == I16F16::MAX {
             return 1 << 46;
         }
-        (i64::from(plane.to_bits()) << (to_clip.unit_bits() + FINE - 16)).min(1 << 46)
+        (i64::from(plane.to_bits()) << (i32::from(self.unit_bits) + FINE - 16)).min(1 << 46)
     }
 
     /// Screen = centre + x/w · 2^this in 1/16 px.
@@ -173,7 +181,7 @@ impl Clip {
     ) -> Option<[i32; 3]> {
         let center @ [.., w] = to_clip.place_all(bounds.center);
         let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
-        let [near, far] = [projection.near, projection.far].map(|at| Self::distance_of(to_clip, at) >> FINE);
+        let [near, far] = [projection.near, projection.far].map(|at| self.distance_of(at) >> FINE);
         let [before, beyond] = [near - i64::from(w), i64::from(w) - far];
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
         if projection.near >= projection.far

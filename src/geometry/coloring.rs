@@ -11,6 +11,13 @@ use super::vertex_colors::{FACETED, LightCode, SMOOTH, VertexColors};
 use crate::math::Pose;
 use crate::scene::Lights;
 
+/// The functions of flat shading, by reference as those of smooth shading are.
+#[derive(Clone, Copy, Debug)]
+struct OnFaces {
+    code: &'static LightCode,
+    light_face: LightFace,
+}
+
 /// Where the colour of a mesh's vertices comes from, for a [`Shader`](crate::Shader) that reads colours. The default is the vertices'
 /// own colour, unlit. [`Material`](crate::Material) has builders of the same names.
 ///
@@ -25,7 +32,7 @@ pub struct Coloring {
     base: Option<[u8; 3]>,
     light: Option<&'static LightCode>,
     /// In place of `light`, where there is any.
-    on_faces: Option<(&'static LightCode, LightFace)>,
+    on_faces: Option<&'static OnFaces>,
     two_sided: bool,
 }
 
@@ -52,7 +59,7 @@ impl Coloring {
     /// The same with light, where there is any, computed once a triangle (flat shading).
     #[must_use]
     pub const fn faceted(self) -> Self {
-        Self { on_faces: Some((FACETED, light_face)), ..self }
+        Self { on_faces: Some(&OnFaces { code: FACETED, light_face }), ..self }
     }
 
     /// The same with light from behind a surface counting as light from in front does.
@@ -78,13 +85,13 @@ impl Coloring {
         pose: &'p Pose,
     ) {
         if let (Some(lights), Some(smooth)) = (lights, self.light) {
-            let code = self.on_faces.map_or(smooth, |(code, _)| code);
+            let code = self.on_faces.map_or(smooth, |on_faces| on_faces.code);
             colors.light(code, lights, pose, self.two_sided);
         }
     }
 
     /// What lights a face in a view with lights, with flat shading.
     pub(crate) fn light_face(&self, lights: Option<&Lights<'_>>) -> Option<LightFace> {
-        lights.and(self.light).and(self.on_faces).map(|(_, light_face)| light_face)
+        lights.and(self.light).and(self.on_faces).map(|on_faces| on_faces.light_face)
     }
 }

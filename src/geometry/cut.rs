@@ -148,11 +148,16 @@ impl Polygon<'_> {
     }
 }
 
-/// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and copies them by words: swapped in place
-/// they would be byte by byte.
+/// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and swaps them by words; number by number, so
+/// that none is on the stack.
 #[inline(never)]
 fn exchange(a: &mut ScreenVertex, b: &mut ScreenVertex) {
-    *a = mem::replace(b, *a);
+    mem::swap(&mut a.x, &mut b.x);
+    mem::swap(&mut a.y, &mut b.y);
+    mem::swap(&mut a.q, &mut b.q);
+    mem::swap(&mut a.u, &mut b.u);
+    mem::swap(&mut a.v, &mut b.v);
+    mem::swap(&mut a.color, &mut b.color);
 }
 
 /// Two elements, `first` < `last`.
@@ -176,11 +181,13 @@ impl Clip {
         to: &mut [ScreenVertex; MOST_CORNERS],
         upper: &mut Upper,
     ) -> (usize, bool) {
-        let planes = self.planes.map(|plane| Split::new(Self::distance_of(to_clip, plane)));
+        let planes = self.planes.map(|plane| Split::new(self.distance_of(plane)));
         let mut polygon = Polygon { vertices: to, lower: [[0; 3]; MOST_CORNERS], upper, count: 3, planes };
         let mut outside = 0;
         for (i, vertex) in corners.into_iter().enumerate() {
-            outside |= self.start(to_clip, vertex, &mut polygon, i);
+            // One after another, so that they are not on the stack together.
+            let may_be_inside = self.start(to_clip, vertex, &mut polygon, i);
+            outside |= self.sides_of(to_clip, vertex, &mut polygon, i, may_be_inside);
         }
         // A side outside of which no vertex lies cuts nothing off. (In a loop that is not unrolled.)
         let mut side = 0;
@@ -206,15 +213,14 @@ impl Clip {
         (count, is_folded)
     }
 
-    /// Sets corner `i` to a vertex of the triangle: clip coordinates and, if it needs no clipping, its position. Returns the sides outside
-    /// of which it lies.
+    /// Sets the clip coordinates of corner `i` to those of a vertex of the triangle. Returns whether it may need no clipping.
     #[inline(never)]
-    fn start(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, i: usize) -> u32 {
-        let mut may_be_inside = true;
+    fn start(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, i: usize) -> bool {
         if self.is_fine {
             for axis in [2, 0, 1] {
                 self.start_along(to_clip, vertex, polygon, i, axis);
             }
+            true
         } else {
             // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
@@ -224,8 +230,21 @@ impl Clip {
                 polygon.set(i, axis, ((i64::from(at) << self.scale()) + center) >> (COARSER - FINE));
             }
             polygon.set(i, 2, i64::from(w) << FINE);
-            may_be_inside = w >= self.least;
+            w >= self.least
         }
+    }
+
+    /// Sets the position of corner `i`, a vertex of the triangle, if it needs no clipping. Returns the sides outside of which it lies.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
+    fn sides_of(
+        &self,
+        to_clip: &ToClip,
+        vertex: &Vertex,
+        polygon: &mut Polygon<'_>,
+        i: usize,
+        may_be_inside: bool,
+    ) -> u32 {
         self.look(polygon, i);
         let Some(to) = polygon.vertices.get_mut(i) else {
             return 0;

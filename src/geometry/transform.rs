@@ -41,7 +41,6 @@ pub(crate) struct ToClip {
     /// What rounding took from the elements and the translation of each row, in units of 2^−[`FINE`] of theirs, within ±2¹⁴; 0
     /// where clipping needs no more bits.
     rests: [[i16; 4]; 3],
-    unit_bits: i32,
 }
 
 /// From a position in the mesh to one clip coordinate.
@@ -150,18 +149,19 @@ pub(super) fn least_w(projection: &Projection, unit_bits: i32) -> i32 {
 impl ToClip {
     /// Of no mesh.
     pub(crate) const ZERO: Self =
-        Self { rows: [Row { elements: [0; 3], translation: 0 }; 3], rests: [[0; 4]; 3], unit_bits: 0 };
+        Self { rows: [Row { elements: [0; 3], translation: 0 }; 3], rests: [[0; 4]; 3] };
 
-    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> Self {
+    /// With the fraction bits of clip coordinates.
+    pub(crate) fn new(projection: &Projection, camera: &Pose, pose: &Pose) -> (Self, i32) {
         let mut to_clip = Self::ZERO;
-        to_clip.set(projection, camera, pose);
-        to_clip
+        let unit_bits = to_clip.set(projection, camera, pose);
+        (to_clip, unit_bits)
     }
 
     /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied. What is done nine times is a function of its own, so
-    /// that it is there once.
+    /// that it is there once. Returns the fraction bits of clip coordinates, 10 … 34.
     #[inline(never)]
-    pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
+    pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) -> i32 {
         // Hidden: the routine that clears what has 64 bits would be linked for this alone.
         let none = black_box(0);
         let mut exact = Exact { matrix: [[none; 3]; 3], translation: [none; 3], all: [0; 2] };
@@ -202,12 +202,7 @@ impl ToClip {
                 set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal, unit_bits);
             }
         }
-        self.unit_bits = unit_bits;
-    }
-
-    /// Fraction bits of clip coordinates, 10 … 34.
-    pub(crate) const fn unit_bits(&self) -> i32 {
-        self.unit_bits
+        unit_bits
     }
 
     /// Whether a sphere of the mesh, whose centre lies `outside` of a plane, reaches over it, give or take four clip units for

@@ -54,8 +54,8 @@ impl Placing {
     /// Sets one that is [`ZERO`](Self::ZERO), in place, so that nothing is copied.
     #[inline]
     pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
-        self.to_clip.set(projection, camera, pose);
-        self.clip = Clip::new(projection, self.to_clip.unit_bits());
+        let unit_bits = self.to_clip.set(projection, camera, pose);
+        self.clip.set(projection, unit_bits);
     }
 
     /// Whether anything within a mesh's bounds may be seen. If so the mesh is placed from now on in the fastest way.

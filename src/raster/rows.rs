@@ -199,14 +199,19 @@ impl Rows {
     /// Calls `emit` with every row that is not empty: the row, and its span's start and end (exclusive), clipped to the window.
     #[inline]
     pub(crate) fn each(&mut self, window: &Window, mut emit: impl FnMut(i32, i32, i32)) {
-        // One loop for both: what is emitted to is inlined once.
-        while let Some((row, left, right)) = match self {
-            Self::Short(spans) => spans.next(),
-            Self::Long(rows) => rows.next(window),
-        } {
+        while let Some((row, left, right)) = self.next(window) {
             if left < right {
                 emit(row, left, right);
             }
+        }
+    }
+
+    /// The next row, and its span's start and end (exclusive), clipped to the window. The span may be empty.
+    #[inline(always)]
+    pub(crate) fn next(&mut self, window: &Window) -> Option<(i32, i32, i32)> {
+        match self {
+            Self::Short(spans) => spans.next(),
+            Self::Long(rows) => rows.next(window),
         }
     }
 }

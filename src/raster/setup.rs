@@ -82,7 +82,7 @@ impl TriangleSetup {
         if !READS && !needs.depth {
             return;
         }
-        self.area = Reciprocal::precise(area);
+        self.set_area(Reciprocal::precise(area));
         let mut slopes = Slopes::new(self, area);
         slopes.find_middle(self);
         let near_w = vertices.map(|vertex| vertex.q.to_bits());
@@ -95,7 +95,7 @@ impl TriangleSetup {
         // Where the far corner is left with few of them, the rounding of steps would be too much for `Exact`: no planes.
         let is_perspective = matches!(needs.straight, Straight::Below(_));
         slopes.sliver |=
-            needs.every_pixel && (q_min < 1 << 19 && is_perspective || slopes.are_coarse(self.area.zeros));
+            needs.every_pixel && (q_min < 1 << 19 && is_perspective || slopes.are_coarse(self.area().zeros));
         if slopes.sliver {
             self.planes = Planes::Corners;
         }

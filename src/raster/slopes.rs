@@ -39,7 +39,7 @@ impl Slopes {
         let (height, width) = (spread(edges[0]), spread(edges[1]));
         // Of each axis the largest difference to 30 bits, times 1/area: over columns there are more of them the less high it is.
         let shifts = edges.map(|[b, c]| normalise(b.unsigned_abs() | c.unsigned_abs() | 1).1 - 2);
-        let Reciprocal { mantissa, zeros } = setup.area;
+        let Reciprocal { mantissa, zeros } = setup.area();
         // (e·2^shift · mantissa) / 2³¹, by halves of the mantissa: e is below 2¹⁵, and so `shift` at least 15.
         let weight = |e: i32, shift: u32| {
             ((e * (mantissa >> 16)) << (shift - 15)) + ((e * (mantissa & 0xffff)) >> (31 - shift))

@@ -39,25 +39,33 @@ impl Planes {
 
 /// A triangle ready to be cut into spans.
 #[derive(Debug)]
+// In this order, so that flags lie where short instructions reach from depth.
+#[repr(C)]
 pub struct TriangleSetup {
-    /// near/w with 31 fraction bits; for depth.
-    pub(crate) z: Plane,
+    pub(crate) attributes: [Attribute; ATTRIBUTES],
     /// What perspective takes. Of a small triangle that is held: of u and v what is to be added x², xy and y² times, x and y being the way
     /// from the first pixel. Of any other that is bent: near/w scaled to 31 bits, as a plane; the size of its step along a row with the
     /// first bit set; the least that it is at a corner; and what straight lines of v keep from the ends of its range.
     pub(super) bends: [[i32; 3]; 2],
+    /// The mantissa of 1 / (twice the area in 1/256 px²); not of small triangles.
+    pub(super) area: i32,
+    /// near/w with 31 fraction bits; for depth.
+    pub(crate) z: Plane,
+    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small triangle the uppermost. Of a small one that is neither
+    /// held nor bent the other two stay what they were: nothing asks for them.
+    pub(super) corners: [[i16; 2]; 3],
     /// Of a held or bent triangle: how many steps along a row attributes are nearly linear. Where u and v are not read it stays what it was.
     pub(crate) longest: u8,
-    /// Of a bent one: how far the step of q was shifted, and whether q rises.
-    pub(super) q_step_zeros: u8,
-    pub(crate) q_rises: bool,
     /// Of a bent one: whether q is nearly the same all along a row, so that attributes may be straight there: its
     /// step is below 2¹².
     pub(crate) is_level: bool,
-    /// Whether all colours at the corners are greys, so that one channel stands for three.
-    pub(crate) gray: bool,
     /// What its planes hold.
     pub(crate) planes: Planes,
+    /// Whether all colours at the corners are greys, so that one channel stands for three.
+    pub(crate) gray: bool,
+    /// Of a bent one: how far the step of q was shifted, and whether q rises.
+    pub(super) q_step_zeros: u8,
+    pub(crate) q_rises: bool,
     /// Of a small one: whether attributes are [held](super::held) in their range. Else planes are of the attributes themselves, as I16F16
     /// with all of the scale.
     pub(crate) is_held: bool,
@@ -69,22 +77,19 @@ pub struct TriangleSetup {
     pub(crate) leans: bool,
     /// Of a bent one: whether its planes may leave the range of the corners by more than [`TriangleSetup::contract`] allows for.
     pub(crate) is_extreme: bool,
-    pub(crate) attributes: [Attribute; ATTRIBUTES],
-    /// x and y in 1/16 px, clockwise on the screen. The nearest is first, of a small triangle the uppermost. Of a small one that is neither
-    /// held nor bent the other two stay what they were: nothing asks for them.
-    pub(super) corners: [[i16; 2]; 3],
-    /// 1 / (twice the area in 1/256 px²); not of small triangles.
-    pub(super) area: Reciprocal,
+    /// The leading zeros of twice the area in 1/256 px²; not of small triangles.
+    pub(super) area_zeros: u8,
 }
 
-const _: () = assert!(size_of::<TriangleSetup>() <= 228);
+const _: () = assert!(size_of::<TriangleSetup>() <= 224);
 
 impl TriangleSetup {
     /// Of no triangle. (One is used for all triangles of a draw: setting it to zero takes 240 cycles.)
     pub(crate) fn new() -> Self {
         Self {
             corners: [[0; 2]; 3],
-            area: Reciprocal { mantissa: 0, zeros: 0 },
+            area: 0,
+            area_zeros: 0,
             gray: false,
             planes: Planes::Screen,
             is_held: false,
@@ -148,6 +153,18 @@ impl TriangleSetup {
     pub(crate) fn beyond_first(&self, [x, y]: [i32; 2]) -> [i32; 2] {
         let [first_x, first_y] = self.first_pixel();
         [x - first_x, y - first_y]
+    }
+
+    /// 1 / (twice the area in 1/256 px²); not of small triangles.
+    #[inline(always)]
+    pub(super) fn area(&self) -> Reciprocal {
+        Reciprocal { mantissa: self.area, zeros: self.area_zeros.into() }
+    }
+
+    /// Sets that.
+    #[inline(always)]
+    pub(super) fn set_area(&mut self, area: Reciprocal) {
+        (self.area, self.area_zeros) = (area.mantissa, area.zeros as u8);
     }
 
     /// Finds out whether all colours are grey, if that is not known.
@@ -253,7 +270,7 @@ impl TriangleSetup {
         let (px, py) = (x * 16 + 8 - ax, y * 16 + 8 - ay);
         [(ax - cx) * py - (ay - cy) * px, (bx - ax) * py - (by - ay) * px].map(|edge_function| {
             // Up to the area: below 2³¹ after this shift, and 1/area has as many zeros.
-            let weight = wide_inlined(edge_function << (self.area.zeros - 1), self.area.mantissa) >> 30;
+            let weight = wide_inlined(edge_function << (u32::from(self.area_zeros) - 1), self.area) >> 30;
             (weight as u32).min(i32::MAX as u32)
         })
     }
@@ -292,8 +309,9 @@ impl TriangleSetup {
         let sum = wide(cy - ay, b) - wide(by - ay, c);
         let magnitude = sum.abs();
         let excess = 31 - normalise((magnitude >> 30) as u32 | 1).1;
-        let product = wide((magnitude >> excess) as i32, self.area.mantissa);
-        let step = shift_round(product, 58 - self.area.zeros - excess).min(i64::from(i32::MAX)) as i32;
+        let product = wide((magnitude >> excess) as i32, self.area);
+        let step =
+            shift_round(product, 58 - u32::from(self.area_zeros) - excess).min(i64::from(i32::MAX)) as i32;
         if sum < 0 { -step } else { step }
     }
 

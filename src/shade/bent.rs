@@ -107,7 +107,7 @@ impl Perspective<'_> {
         }
         let w_step = if down >= 0 { size >> down.min(31) } else { size << -down };
         self.curve.set_w(rises, w_step, steps);
-        (self.curve.n, self.curve.n_step) = if rises { (steps, u32::MAX) } else { (0, 1) };
+        self.curve.set_distances(rises, steps);
         match way_of(self.units.form, w_step, steps) {
             Way::None => None,
             way => Some((way, (size, down))),
@@ -329,13 +329,8 @@ mod tests {
                 }
             }
             Way::Chords => {
-                let curve = Curve {
-                    w: u32::MAX,
-                    w_step: 0u32.wrapping_sub(w_step),
-                    n: 0,
-                    n_step: 1,
-                    ..Curve::default()
-                };
+                let mut curve = Curve { w: u32::MAX, w_step: 0u32.wrapping_sub(w_step), ..Curve::default() };
+                curve.set_distances(false, steps);
                 let mut chords = Chords::new(&curve);
                 let mut n = 0;
                 while n <= steps {

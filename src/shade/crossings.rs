@@ -28,7 +28,10 @@ impl Way {
         let w = curve.w.wrapping_add(n.wrapping_mul(curve.w_step));
         match self {
             Self::Table => inverse(w),
-            Self::Chords => distance(Form::Modular, w, curve.n.wrapping_add(n.wrapping_mul(curve.n_step))),
+            Self::Chords => {
+                let (first, step) = curve.distances();
+                distance(Form::Modular, w, first.wrapping_add(n.wrapping_mul(step)))
+            }
         }
     }
 }

@@ -19,15 +19,20 @@ use crate::raster::{ATTRIBUTES, short_inverse, towards_zero};
 /// form t · `slope` is shifted right by `down`. Of a straight part `at` is at the first pixel and `slope` the step,
 /// both I16F16.
 #[derive(Debug, Default)]
+// In this order, so that bytes lie where short instructions reach.
+#[repr(C)]
 pub struct Curve {
-    pub(crate) lines: [Linear; ATTRIBUTES],
     pub(crate) down: [u8; ATTRIBUTES],
+    /// How far the left pixel is from the near end, and by how much the next is farther: 1 or −1. (In 8 bits each: a curve is on the
+    /// stack while pixels are drawn.)
+    pub(super) n: u8,
+    pub(super) n_step: i8,
+    /// The leading zeros of q at the last division, which those at the next are close to. (It fills a gap.)
+    pub(super) zeros: u8,
+    pub(crate) lines: [Linear; ATTRIBUTES],
     /// w at the left pixel, 32 fraction bits (1 is `u32::MAX`), and its step to the right, which wraps.
     pub(crate) w: u32,
     pub(crate) w_step: u32,
-    /// How far the left pixel is from the near end, and by how much the next is farther: 1 or −1.
-    pub(crate) n: u32,
-    pub(crate) n_step: u32,
 }
 
 /// An attribute along a part of a row: linear in t. `at` is its value at t = 0, and `slope` its change over a unit of
@@ -55,6 +60,26 @@ impl Linear {
 }
 
 impl Curve {
+    /// How far the left pixel is from the near end, and by how much the next is farther, which may wrap: 1 or −1.
+    #[inline(always)]
+    pub(crate) fn distances(&self) -> (u32, u32) {
+        (self.n.into(), self.n_step as u32)
+    }
+
+    /// Sets these for a part of so many steps, at most [`MOST_IN_CHORDS`]; of more they are of no use.
+    #[inline(always)]
+    pub(super) fn set_distances(&mut self, rises: bool, steps: u32) {
+        (self.n, self.n_step) = if rises { (steps as u8, -1) } else { (0, 1) };
+    }
+
+    /// Goes on by so many pixels.
+    #[inline]
+    pub(crate) fn go_on(&mut self, count: u32) {
+        self.w = self.w.wrapping_add(count.wrapping_mul(self.w_step));
+        let (n, n_step) = self.distances();
+        self.n = n.wrapping_add(count.wrapping_mul(n_step)) as u8;
+    }
+
     /// Makes w 1 at the near end, which is the right one if q rises.
     #[inline(always)]
     pub(super) fn set_w(&mut self, rises: bool, w_step: u32, steps: u32) {
@@ -100,7 +125,7 @@ pub(crate) struct Ts<const CHORDS: bool> {
 impl<const CHORDS: bool> Ts<CHORDS> {
     #[inline(always)]
     pub(crate) fn new(curve: &Curve) -> Self {
-        let Curve { w, w_step, n, n_step, .. } = *curve;
+        let (w, w_step, (n, n_step)) = (curve.w, curve.w_step, curve.distances());
         Self { w, w_step, n, n_step }
     }
 
@@ -124,7 +149,7 @@ pub(crate) struct Chords {
 impl Chords {
     #[inline(always)]
     pub(crate) fn new(curve: &Curve) -> Self {
-        let Curve { w, w_step, n, n_step, .. } = *curve;
+        let (w, w_step, (n, n_step)) = (curve.w, curve.w_step, curve.distances());
         Self { w, w_step, n, n_step, t: distance(Form::Modular, w, n) }
     }
 

@@ -228,13 +228,13 @@ impl<const N: usize, Q: Quality, W, C: Fn([i32; N]) -> W> Fill<W> for Each<N, Q,
 
     fn table(&self, pixels: &mut [W], curve: &Curve) {
         let (lines, down) = (some_of::<N, _>(&curve.lines, 0), some_of::<N, _>(&curve.down, 0));
-        let (mut w, mut n) = (curve.w, curve.n);
+        let (mut w, (mut n, n_step)) = (curve.w, curve.distances());
         for pixel in pixels {
             let t = distance(if Q::EVERY_PIXEL { Form::Exact } else { Form::General }, w, n) as i32;
             *pixel = (self.0)(core::array::from_fn(|i| {
                 (lines[i].at as i32).wrapping_add(t.wrapping_mul(lines[i].slope) >> (down[i] & 31))
             }));
-            (w, n) = (w.wrapping_add(curve.w_step), n.wrapping_add(curve.n_step));
+            (w, n) = (w.wrapping_add(curve.w_step), n.wrapping_add(n_step));
             black_box(());
         }
     }

@@ -71,8 +71,6 @@ pub(crate) struct Perspective<'a> {
     way: fn(&mut Self, x: i32, y: i32, steps: u32) -> Way,
     /// Of bent triangles [scaled](Units::scaled).
     pub(super) units: Units,
-    /// The leading zeros of q at the last division, which those at the next are close to.
-    zeros: u8,
     pub(super) curve: Curve,
 }
 
@@ -82,7 +80,7 @@ impl<'a> Perspective<'a> {
     pub(crate) fn new<W>(setup: &'a TriangleSetup, fill: &dyn Fill<W>) -> Self {
         let mut units = fill.units();
         let way = Self::way_of(setup, &mut units);
-        Self { setup, way, units, zeros: 1, curve: Curve::default() }
+        Self { setup, way, units, curve: Curve { zeros: 1, ..Curve::default() } }
     }
 
     /// The way of all rows of a triangle.
@@ -133,7 +131,7 @@ impl<'a> Perspective<'a> {
     #[inline(always)]
     pub(super) fn mantissa_of(&mut self, q: u32) -> (u32, u32) {
         let q = self.setup.bounded(q);
-        let zeros = u32::from(self.zeros);
+        let zeros = u32::from(self.curve.zeros);
         let mantissa = q << (zeros & 31);
         // Most often q has as many leading zeros as at the last division. Armv6-M has no instruction that counts them.
         if IS_ARMV6M && (mantissa as i32) < 0 && mantissa >> (zeros & 31) == q {
@@ -141,7 +139,7 @@ impl<'a> Perspective<'a> {
         }
         let (mantissa, zeros) = normalise(q);
         if IS_ARMV6M {
-            self.zeros = zeros as u8;
+            self.curve.zeros = zeros as u8;
         }
         (mantissa, zeros)
     }

@@ -164,8 +164,7 @@ impl<'a, F: PixelFormat, B: Border> Bordered<'a, F, B> {
             }
             pixels = rest;
             left = left.map(|left| left - count);
-            part.w = part.w.wrapping_add(count.wrapping_mul(part.w_step));
-            part.n = part.n.wrapping_add(count.wrapping_mul(part.n_step));
+            part.go_on(count);
             ends.t = way.t(&part, 0);
         }
     }

@@ -4,6 +4,7 @@
 //! What they are made of is public, so that `tests/peers` can draw the same with other libraries.
 
 use embedded_graphics::{pixelcolor::Rgb565, prelude::*};
+use fixel::material::Textured;
 use fixel::prelude::*;
 use fixel::shapes::{self, Shape};
 
@@ -126,6 +127,8 @@ pub const AMBIENT: [u8; 3] = [40; 3];
 static SUN: [Light; 1] = [Light::directional(SUN_DIRECTION, SUN_COLOR)];
 pub(crate) static LIGHTS: Lights = Lights::new(AMBIENT, &SUN);
 
+static BRICKS: Material<Textured> = Material::textured(&WALL);
+
 /// A frame without depth.
 pub type Flat<'a> = Band<'a, Rgb565, NoDepth>;
 /// A frame with depth.
@@ -140,19 +143,19 @@ pub const fn floor_pose(roll: Turn) -> Pose {
 /// s1: the floor, turned about the view axis.
 #[inline(always)]
 pub fn s1(roll: Turn, frame: &mut Flat<'_>) {
-    CAMERA.draw(&FLOOR, &floor_pose(roll), &Material::textured(&WALL), frame);
+    CAMERA.draw(&FLOOR, &floor_pose(roll), &BRICKS, frame);
 }
 
 /// s1_ground: the ground of a game, clipped by the near plane and beyond every edge of the screen.
 #[inline(always)]
 pub fn s1_ground(frame: &mut Flat<'_>) {
-    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &Material::textured(&WALL), frame);
+    GROUND_CAMERA.draw(&GROUND, &GROUND_POSE, &BRICKS, frame);
 }
 
 /// s2: the cube.
 #[inline(always)]
 pub fn s2(frame: &mut Deep<'_>) {
-    CAMERA.draw(&CUBE, &S2, &Material::textured(&WALL), frame);
+    CAMERA.draw(&CUBE, &S2, &BRICKS, frame);
 }
 
 /// s3: the torus, Gouraud shaded.
