@@ -65,3 +65,15 @@ pub(super) const fn round14(sum: i64, fraction_bits: u32) -> I2F14 {
         rounded as i16
     })
 }
+
+/// A sum of two products with 14 fraction bits each as an `I2F14`, rounded and saturated.
+pub(super) const fn round14_short(sum: i32) -> I2F14 {
+    let rounded = ((sum >> 13) + 1) >> 1;
+    I2F14::from_bits(if rounded > i16::MAX as i32 {
+        i16::MAX
+    } else if rounded < i16::MIN as i32 {
+        i16::MIN
+    } else {
+        rounded as i16
+    })
+}
