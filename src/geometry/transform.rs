@@ -14,7 +14,7 @@
 
 use crate::math::Pose;
 use crate::num::{
-    I4F12, I16F16, U10F22, leading_zeros, mul_long, mul_round, shift_round, wide, wide_unsigned, zeros_of,
+    I4F12, I16F16, U10F22, leading_zeros, mul_long, shift_round, wide, wide_unsigned, zeros_of,
 };
 use crate::scene::{Bounds, Projection, Viewport};
 use core::array;
@@ -57,16 +57,19 @@ struct Row {
     translation: i32,
 }
 
-impl Row {
-    /// Sets the elements, from a row of the matrix without its last `excess` bits, times the focal length's mantissa if that is not 0.
-    #[inline(never)]
-    fn set(&mut self, matrix: &[i64; 3], focal: i32, [excess, shift]: [i32; 2]) {
-        for (to, element) in self.elements.iter_mut().zip(matrix) {
-            // 30 bits; then 15 fraction bits.
-            *to = halves(((shortened(*element, excess, focal) >> shift) + 1) >> 1);
-        }
-    }
+/// What all rows of a mesh are rounded to.
+struct Unit {
+    /// How many bits more than 30 the elements have.
+    excess: i32,
+    /// How many of the 30 bits more than 15 fraction bits, less one.
+    shift: i32,
+    /// The focal length's mantissa, by which the rows for x and y are multiplied.
+    focal: i32,
+    /// Whether clipping needs more bits.
+    is_fine: bool,
+}
 
+impl Row {
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
         let (mut whole, mut rest) = (self.translation, 0);
@@ -183,26 +186,32 @@ impl ToClip {
         let unit_bits = unit_bits.min(far_bits);
         let focal = projection.focal.to_bits();
         let focal = focal << (zeros_of(focal as u32) - 1); // 2³⁰ … 2³¹ − 1
-        let focal = [focal, focal, 0];
         // At least 1.
         let shift = (fraction_bits - 4 - unit_bits).min(31);
-        for ((row, focal), (matrix, translation)) in
-            self.rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
-        {
-            row.set(matrix, focal, [excess, shift]);
-            row.translation = shortened(translation, 30 - unit_bits, focal);
-        }
         let least = least_w(projection, unit_bits);
         // The near plane may be nearer than that, in 1/65536.
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
         let is_fine = least == i32::MAX || is_near;
-        if is_fine {
-            for (row, focal) in focal.into_iter().enumerate() {
-                let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
-                set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal, unit_bits);
-            }
-        }
         self.unit_bits = unit_bits;
+        let unit = Unit { excess, shift, focal, is_fine };
+        for row in 0..3 {
+            self.set_row(row, &exact, &unit);
+        }
+    }
+
+    /// Sets the row for x, y or w.
+    #[inline(never)]
+    fn set_row(&mut self, axis: usize, exact: &Exact, unit: &Unit) {
+        let (row, matrix, translation) = (&mut self.rows[axis], &exact.matrix[axis], exact.translation[axis]);
+        let focal = if axis < 2 { unit.focal } else { 0 };
+        for (to, element) in row.elements.iter_mut().zip(matrix) {
+            // 30 bits; then 15 fraction bits.
+            *to = halves(((shortened(*element, unit.excess, focal) >> unit.shift) + 1) >> 1);
+        }
+        row.translation = shortened(translation, 30 - self.unit_bits, focal);
+        if unit.is_fine {
+            set_rests(&mut self.rests[axis], row, matrix, translation, focal, self.unit_bits);
+        }
     }
 
     /// Fraction bits of clip coordinates, 10 … 34.
@@ -382,7 +391,7 @@ fn scaled(value: i32, scale: U10F22) -> i64 {
 fn shortened(value: i64, dropped: i32, focal: i32) -> i32 {
     let value =
         if dropped >= 0 { shift_round(value, dropped.min(63) as u32) } else { value << -dropped.max(-63) };
-    if focal != 0 { mul_round::<31>(value as i32, focal) } else { value as i32 }
+    if focal != 0 { ((wide(value as i32, focal) + (1 << 30)) >> 31) as i32 } else { value as i32 }
 }
 
 #[cfg(test)]
