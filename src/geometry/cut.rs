@@ -39,7 +39,7 @@ use super::clip::{CUT_AT, Clip, FINER, on_border};
 use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::ScreenVertex;
-use super::transform::{FINE, ToClip};
+use super::transform::{FINE, Split, ToClip};
 use crate::num::{I12F4, I16F16, U8F8, mul_long, wide, zeros_of};
 use crate::scene::Vertex;
 use core::mem;
@@ -64,24 +64,8 @@ struct Polygon<'a> {
     lower: [[u32; 3]; MOST_CORNERS],
     upper: &'a mut Upper,
     count: usize,
-    /// w of the near and of the far plane, in the same unit. (An `i64` is aligned to 8 bytes, and to clear these takes another routine.)
+    /// w of the near and of the far plane, in the same unit.
     planes: [Split; 2],
-}
-
-/// A number of 64 bits, as lower and upper half.
-#[derive(Clone, Copy)]
-struct Split([u32; 2]);
-
-impl Split {
-    fn new(value: i64) -> Self {
-        Self([value as u32, (value >> 32) as u32])
-    }
-
-    #[inline(always)]
-    fn value(self) -> i64 {
-        let Self([lower, upper]) = self;
-        (u64::from(upper) << 32 | u64::from(lower)) as i64
-    }
 }
 
 /// The memory that clipping takes besides that of the vertices and its own stack. A mesh has it while none of its triangles is drawn.
@@ -219,10 +203,9 @@ impl Clip {
             // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
             let divisor = if self.flat() != 0 { 1 << self.flat() } else { w };
-            for (axis, at) in [(0, x), (1, y)] {
-                let center = wide(divisor, self.center[axis] >> FINER);
-                polygon.set(i, axis, ((i64::from(at) << self.scale()) + center) >> (COARSER - FINE));
-            }
+            // By one function, as the loop would be unrolled.
+            polygon.set(i, 0, self.across(x, divisor, self.center[0]));
+            polygon.set(i, 1, self.across(y, divisor, self.center[1]));
             polygon.set(i, 2, i64::from(w) << FINE);
             may_be_inside = w >= self.least;
         }
@@ -238,6 +221,12 @@ impl Clip {
             return outside.to_bits() as u32;
         }
         0
+    }
+
+    /// x or y of a corner, from clip coordinates of 32 bits.
+    #[inline(never)]
+    fn across(&self, at: i32, divisor: i32, center: i32) -> i64 {
+        ((i64::from(at) << self.scale()) + wide(divisor, center >> FINER)) >> (COARSER - FINE)
     }
 
     /// Sets one clip coordinate of corner `i` from all bits there are: w (axis 2) first, as x and y need it.
@@ -294,11 +283,12 @@ impl Clip {
     fn distance(&self, polygon: &Polygon<'_>, i: usize, side: usize) -> i64 {
         let at = polygon.at(i, if side < 2 { 2 } else { side / 2 - 1 });
         let at = if side & 1 == 0 { at } else { -at };
-        match side {
-            0 => at - polygon.planes[0].value(),
-            1 => at + polygon.planes[1].value(),
-            _ => self.border_of(polygon, i) + at,
-        }
+        let reach = match side {
+            0 => -polygon.planes[0].value(),
+            1 => polygon.planes[1].value(),
+            _ => self.border_of(polygon, i),
+        };
+        reach + at
     }
 
     /// The largest |x| and |y| of a corner that lies inside the sides: w · [`CUT_AT`] / 2^[`COARSER`].
@@ -351,12 +341,19 @@ impl Clip {
             polygon.count = 0;
             return None;
         }
-        // With the one that follows one outside.
-        let outside = outside | outside << count; // twice around
-        let first_out = outside.trailing_zeros();
-        let first = first_out + (outside >> first_out).trailing_ones();
-        polygon.rotate(if first < count as u32 { first as usize } else { first as usize - count });
-        Some((outside >> first).trailing_zeros() as usize)
+        // With the one that follows one outside. (Bit after bit: a table that counts zeros, and its use, take 90 bytes more.)
+        let mut left = outside | outside << count; // twice around
+        let mut pass = |are_outside: u32| {
+            let mut passed = 0;
+            while left & 1 == are_outside {
+                (left, passed) = (left >> 1, passed + 1);
+            }
+            passed
+        };
+        let first = pass(0) + pass(1);
+        let stay = pass(0);
+        polygon.rotate(if first < count { first } else { first - count });
+        Some(stay)
     }
 
     /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.

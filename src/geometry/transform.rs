@@ -18,7 +18,6 @@ use crate::num::{
 };
 use crate::scene::{Bounds, Projection, Viewport};
 use core::array;
-use core::hint::black_box;
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
 pub(crate) const fn focal_log2(focal: I16F16) -> i32 {
@@ -69,6 +68,15 @@ struct Unit {
     is_fine: bool,
 }
 
+impl Unit {
+    /// An element, times the focal length's mantissa if that is not 0.
+    #[inline(never)]
+    fn rounded(&self, exact: &Split, focal: i32) -> i32 {
+        // 30 bits; then 15 fraction bits.
+        halves(((shortened(exact.value(), self.excess, focal) >> self.shift) + 1) >> 1)
+    }
+}
+
 impl Row {
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
@@ -78,6 +86,12 @@ impl Row {
             rest += at * i32::from(halves as i16);
         }
         whole + (rest >> 15)
+    }
+
+    /// The same, out of line: there is one copy for all rows.
+    #[inline(never)]
+    fn place_apart(&self, position: &[I4F12; 3]) -> i32 {
+        self.place(position.map(|at| i32::from(at.to_bits())))
     }
 
     /// The same with [`FINE`] bits more.
@@ -104,16 +118,15 @@ impl Row {
 fn set_rests(
     rests: &mut [i16; 4],
     row: &Row,
-    matrix: &[i64; 3],
-    translation: i64,
+    exact: &[Split; 4],
     focal: i32,
     unit_bits: i32,
 ) {
     // Elements are steps of 2⁻¹² with 15 fraction bits.
-    for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(matrix) {
-        *to = rest(*value, 33 - unit_bits, focal, element(halves));
+    for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(exact) {
+        *to = rest(value.value(), 33 - unit_bits, focal, element(halves));
     }
-    rests[3] = rest(translation, 16 - unit_bits, focal, row.translation);
+    rests[3] = rest(exact[3].value(), 16 - unit_bits, focal, row.translation);
 }
 
 #[inline(never)]
@@ -165,13 +178,11 @@ impl ToClip {
     /// that it is there once.
     #[inline(never)]
     pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) {
-        // Hidden: the routine that clears what has 64 bits would be linked for this alone.
-        let none = black_box(0);
-        let mut exact = Exact { matrix: [[none; 3]; 3], translation: [none; 3], all: [0; 2] };
+        let mut exact = Exact { rows: [[Split::ZERO; 4]; 3], all: [Split::ZERO; 2] };
         for row in 0..3 {
             exact.set_row(row, camera, pose);
         }
-        let [of_matrix, of_translation] = exact.all.map(|all| 64 - leading_zeros(all) as i32);
+        let [of_matrix, of_translation] = exact.all.map(|all| 64 - leading_zeros(all.value() as u64) as i32);
         let excess = of_matrix - 30;
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
@@ -202,15 +213,15 @@ impl ToClip {
     /// Sets the row for x, y or w.
     #[inline(never)]
     fn set_row(&mut self, axis: usize, exact: &Exact, unit: &Unit) {
-        let (row, matrix, translation) = (&mut self.rows[axis], &exact.matrix[axis], exact.translation[axis]);
+        let (row, exact) = (&mut self.rows[axis], &exact.rows[axis]);
+        let [.., translation] = *exact;
         let focal = if axis < 2 { unit.focal } else { 0 };
-        for (to, element) in row.elements.iter_mut().zip(matrix) {
-            // 30 bits; then 15 fraction bits.
-            *to = halves(((shortened(*element, unit.excess, focal) >> unit.shift) + 1) >> 1);
+        for (to, element) in row.elements.iter_mut().zip(exact) {
+            *to = unit.rounded(element, focal);
         }
-        row.translation = shortened(translation, 30 - self.unit_bits, focal);
+        row.translation = shortened(translation.value(), 30 - self.unit_bits, focal);
         if unit.is_fine {
-            set_rests(&mut self.rests[axis], row, matrix, translation, focal, self.unit_bits);
+            set_rests(&mut self.rests[axis], row, exact, focal, self.unit_bits);
         }
     }
 
@@ -306,8 +317,7 @@ impl ToClip {
     /// Along all.
     #[inline(never)]
     pub(crate) fn place_all(&self, position: [I4F12; 3]) -> [i32; 3] {
-        let position = position.map(|at| i32::from(at.to_bits()));
-        self.rows.each_ref().map(|row| row.place(position))
+        self.rows.each_ref().map(|row| row.place_apart(&position))
     }
 }
 
@@ -337,14 +347,37 @@ fn root_or_more(square: u32) -> u32 {
     (least + 2 + halved) >> halved
 }
 
+/// A number of 64 bits, as lower and upper half. (An `i64` is aligned to 8 bytes, and to clear some takes a routine of its own.)
+#[derive(Clone, Copy)]
+pub(super) struct Split([u32; 2]);
+
+impl Split {
+    const ZERO: Self = Self([0; 2]);
+
+    pub(super) fn new(value: i64) -> Self {
+        Self([value as u32, (value >> 32) as u32])
+    }
+
+    #[inline(always)]
+    pub(super) fn value(self) -> i64 {
+        let Self([lower, upper]) = self;
+        (u64::from(upper) << 32 | u64::from(lower)) as i64
+    }
+
+    /// Sets it, and adds the bits that are in its size to `all`. Out of line, as what calls it is unrolled.
+    #[inline(never)]
+    fn set(&mut self, value: i64, all: &mut Self) {
+        *self = Self::new(value);
+        *all = Self::new(all.value() | value.unsigned_abs() as i64);
+    }
+}
+
 /// The matrix before it is rounded, without the focal length.
 struct Exact {
-    /// 28 fraction bits (4.0 at most) times 22 are 50.
-    matrix: [[i64; 3]; 3],
-    /// 14 times 16 are 30.
-    translation: [i64; 3],
-    /// The bits that are in any of either.
-    all: [u64; 2],
+    /// Elements: 28 fraction bits (4.0 at most) times 22 are 50. Translation: 14 times 16 are 30.
+    rows: [[Split; 4]; 3],
+    /// The bits that are in any element, and in any translation.
+    all: [Split; 2],
 }
 
 impl Exact {
@@ -352,14 +385,13 @@ impl Exact {
     /// clip space y is down and w along −z.
     #[inline(never)]
     fn set_row(&mut self, row: usize, camera: &Pose, pose: &Pose) {
-        let axis =
-            camera.rotation.map(|r| i32::from(r[row].to_bits())).map(|at| if row == 0 { at } else { -at });
+        let sign = if row == 0 { 1 } else { -1 };
+        let axis = camera.rotation.map(|r| i32::from(r[row].to_bits()) * sign);
         let [to, from] = [pose, camera].map(|pose| along(axis, pose.translation.bits()));
-        self.translation[row] = to - from;
-        self.all[1] |= (to - from).unsigned_abs();
-        for (column, to) in self.matrix[row].iter_mut().enumerate() {
-            *to = scaled_axis(axis, pose, column);
-            self.all[0] |= to.unsigned_abs();
+        let (exact, all) = (&mut self.rows[row], &mut self.all);
+        exact[3].set(to - from, &mut all[1]);
+        for (column, to) in exact.iter_mut().enumerate().take(3) {
+            to.set(scaled_axis(axis, pose, column), &mut all[0]);
         }
     }
 }
