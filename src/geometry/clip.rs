@@ -183,7 +183,8 @@ impl Clip {
             return None;
         }
         // Hidden, so that the loop is not unrolled.
-        let is_seen = (0..black_box(4)).all(|side| self.reaches(to_clip, &center, radius, (projection, side)));
+        let is_seen =
+            (0..black_box(4)).all(|side| self.reaches(to_clip, &center, radius, (projection, side)));
         is_seen.then_some(center)
     }
 

@@ -40,8 +40,9 @@ use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::ScreenVertex;
 use super::transform::{FINE, Split, ToClip};
-use crate::num::{I12F4, I16F16, U8F8, mul_long, wide, zeros_of};
+use crate::num::{I12F4, I16F16, IS_ARMV6M, U8F8, mul_long, wide, zeros_of};
 use crate::scene::Vertex;
+use core::hint::black_box;
 use core::mem;
 
 /// The most corners that a clipped triangle has: three, and one more for each plane.
@@ -148,6 +149,22 @@ fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> 
     }
 }
 
+/// The number of the lowest bit that is set, of those below 18. On Armv6-M one after another: the compiler's way takes a table.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+fn lowest_bit(mut of: u32) -> usize {
+    if !IS_ARMV6M {
+        return of.trailing_zeros() as usize;
+    }
+    let mut number = 0;
+    while of & 1 == 0 && number < 18 {
+        (of, number) = (of >> 1, number + 1);
+        // Not unrolled.
+        black_box(());
+    }
+    number
+}
+
 impl Clip {
     /// Clips a triangle and puts what is left of it on the screen, as a fan around its first vertex. Returns how many corners
     /// that has, and whether it is [folded](super::fan). `to` begins with the attributes of the corners.
@@ -203,7 +220,6 @@ impl Clip {
             // From clip coordinates of 32 bits, which are exact enough.
             let [x, y, w] = to_clip.place_all(vertex.position);
             let divisor = if self.flat() != 0 { 1 << self.flat() } else { w };
-            // By one function, as the loop would be unrolled.
             polygon.set(i, 0, self.across(x, divisor, self.center[0]));
             polygon.set(i, 1, self.across(y, divisor, self.center[1]));
             polygon.set(i, 2, i64::from(w) << FINE);
@@ -223,8 +239,9 @@ impl Clip {
         0
     }
 
-    /// x or y of a corner, from clip coordinates of 32 bits.
-    #[inline(never)]
+    /// x or y of a corner, from clip coordinates of 32 bits. Out of line on Armv6-M: there is one copy for both.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn across(&self, at: i32, divisor: i32, center: i32) -> i64 {
         ((i64::from(at) << self.scale()) + wide(divisor, center >> FINER)) >> (COARSER - FINE)
     }
@@ -341,19 +358,12 @@ impl Clip {
             polygon.count = 0;
             return None;
         }
-        // With the one that follows one outside. (Bit after bit: a table that counts zeros, and its use, take 90 bytes more.)
-        let mut left = outside | outside << count; // twice around
-        let mut pass = |are_outside: u32| {
-            let mut passed = 0;
-            while left & 1 == are_outside {
-                (left, passed) = (left >> 1, passed + 1);
-            }
-            passed
-        };
-        let first = pass(0) + pass(1);
-        let stay = pass(0);
+        // With the one that follows one outside.
+        let outside = outside | outside << count; // twice around
+        let first_out = lowest_bit(outside);
+        let first = first_out + lowest_bit(!(outside >> first_out));
         polygon.rotate(if first < count { first } else { first - count });
-        Some(stay)
+        Some(lowest_bit(outside >> first))
     }
 
     /// Sets corner `to` where the edge from corner `inside` to corner `outside` crosses a plane. `to` may be `outside`.

@@ -69,8 +69,9 @@ struct Unit {
 }
 
 impl Unit {
-    /// An element, times the focal length's mantissa if that is not 0.
-    #[inline(never)]
+    /// An element, times the focal length's mantissa if that is not 0. Out of line on Armv6-M: there is one copy for all elements.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn rounded(&self, exact: &Split, focal: i32) -> i32 {
         // 30 bits; then 15 fraction bits.
         halves(((shortened(exact.value(), self.excess, focal) >> self.shift) + 1) >> 1)
@@ -88,8 +89,9 @@ impl Row {
         whole + (rest >> 15)
     }
 
-    /// The same, out of line: there is one copy for all rows.
-    #[inline(never)]
+    /// The same, out of line on Armv6-M: there is one copy for all rows.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn place_apart(&self, position: &[I4F12; 3]) -> i32 {
         self.place(position.map(|at| i32::from(at.to_bits())))
     }
@@ -115,13 +117,7 @@ impl Row {
 /// leaves is within ¾ of 2^[`FINE`], and three of it times 2¹⁵ steps are below 2³¹.
 #[cold]
 #[inline(never)]
-fn set_rests(
-    rests: &mut [i16; 4],
-    row: &Row,
-    exact: &[Split; 4],
-    focal: i32,
-    unit_bits: i32,
-) {
+fn set_rests(rests: &mut [i16; 4], row: &Row, exact: &[Split; 4], focal: i32, unit_bits: i32) {
     // Elements are steps of 2⁻¹² with 15 fraction bits.
     for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(exact) {
         *to = rest(value.value(), 33 - unit_bits, focal, element(halves));
@@ -364,8 +360,9 @@ impl Split {
         (u64::from(upper) << 32 | u64::from(lower)) as i64
     }
 
-    /// Sets it, and adds the bits that are in its size to `all`. Out of line, as what calls it is unrolled.
-    #[inline(never)]
+    /// Sets it, and adds the bits that are in its size to `all`. Out of line on Armv6-M, as what calls it is unrolled.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn set(&mut self, value: i64, all: &mut Self) {
         *self = Self::new(value);
         *all = Self::new(all.value() | value.unsigned_abs() as i64);

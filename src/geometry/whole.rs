@@ -90,9 +90,8 @@ impl Placing {
         if nearest >> 2 < clip.least || farthest as i32 > clip.far {
             return;
         }
-        let across = |axis: usize| {
-            center[axis].unsigned_abs().wrapping_add(to_clip.reach(axis, radius) as u32)
-        };
+        let across =
+            |axis: usize| center[axis].unsigned_abs().wrapping_add(to_clip.reach(axis, radius) as u32);
         let across = across(0).max(across(1)).min(MOST);
         // Positive, so that one bit is left for the sign of x and y.
         let bits = (zeros_of(across) - 1).min(MOST_BITS);
