@@ -190,7 +190,8 @@ impl Clip {
 
     /// Whether bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that lies at
     /// a slope of side : focal length, in 1/16 px. Sides are left, right, top and bottom.
-    #[inline(never)]
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn reaches(
         &self,
         to_clip: &ToClip,

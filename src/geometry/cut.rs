@@ -149,7 +149,7 @@ fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> 
     }
 }
 
-/// The number of the lowest bit that is set, of those below 18. On Armv6-M one after another: the compiler's way takes a table.
+/// The number of the lowest bit that is set: one is. On Armv6-M one after another: the compiler's way takes a table.
 #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 fn lowest_bit(mut of: u32) -> usize {
@@ -157,7 +157,7 @@ fn lowest_bit(mut of: u32) -> usize {
         return of.trailing_zeros() as usize;
     }
     let mut number = 0;
-    while of & 1 == 0 && number < 18 {
+    while of & 1 == 0 {
         (of, number) = (of >> 1, number + 1);
         // Not unrolled.
         black_box(());
