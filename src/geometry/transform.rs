@@ -12,7 +12,7 @@
 //! A mesh may reach 16 000 units far and still be cut at a near plane 1/256 of a unit before the eye: no 32 bits hold both. What
 //! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
-use crate::math::Pose;
+use crate::math::{Pose, dot};
 use crate::num::{
     I4F12, I16F16, U10F22, leading_zeros, mul_long, shift_round, wide, wide_unsigned, zeros_of,
 };
@@ -384,20 +384,13 @@ impl Exact {
     fn set_row(&mut self, row: usize, camera: &Pose, pose: &Pose) {
         let sign = if row == 0 { 1 } else { -1 };
         let axis = camera.rotation.map(|r| i32::from(r[row].to_bits()) * sign);
-        let [to, from] = [pose, camera].map(|pose| along(axis, pose.translation.bits()));
+        let [to, from] = [pose, camera].map(|pose| dot(axis, pose.translation.bits()));
         let (exact, all) = (&mut self.rows[row], &mut self.all);
         exact[3].set(to - from, &mut all[1]);
         for (column, to) in exact.iter_mut().enumerate().take(3) {
             to.set(scaled_axis(axis, pose, column), &mut all[0]);
         }
     }
-}
-
-/// A vector's length along an axis.
-#[inline(never)]
-fn along(axis: [i32; 3], vector: [i32; 3]) -> i64 {
-    let [x, y, z] = axis;
-    wide(x, vector[0]) + wide(y, vector[1]) + wide(z, vector[2])
 }
 
 /// How far an axis of a pose reaches along another axis, times its scale.

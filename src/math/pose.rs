@@ -112,7 +112,7 @@ impl Pose {
         let mut i = 0;
         while i < 9 {
             let (row, column) = (i / 3, i % 3);
-            let sum = dot(turn[row], column_of(&old, column));
+            let sum = dot(column_of(&old, column), turn[row]);
             self.rotation[row][column] = round14(sum, 30);
             i += 1;
         }
