@@ -333,11 +333,11 @@ impl Clip {
         let [x, y, w] = [0, 1, 2].map(|axis| polygon.at(i, axis));
         let border = self.border_of(polygon, i);
         let [near, far] = polygon.planes.map(Split::value);
-        let mut outside = i16::from(w < near) | i16::from(w > far) << 1;
-        for (at, bit) in [(x, 2), (y, 4)] {
-            // Behind the eye the border is negative, and both may be true.
-            outside |= (i16::from(-at > border) | i16::from(at > border) << 1) << bit;
-        }
+        // Behind the eye the border is negative, and of two sides that face each other both may be true.
+        let distances = [w - near, far - w, border + x, border - x, border + y, border - y];
+        // The sign is the bit.
+        let outside =
+            distances.iter().rev().fold(0, |bits, distance| bits << 1 | (distance >> 63) as i16 & 1);
         if let Some(vertex) = polygon.vertices.get_mut(i) {
             vertex.y = I12F4::from_bits(outside);
         }
