@@ -42,6 +42,7 @@ impl UvCode {
         bend: TriangleSetup::bend,
         complete_held: TriangleSetup::complete_held_uv,
         complete: TriangleSetup::settle,
+        pack: Needs::pack_uv,
         scale: Needs::scale_for,
     };
 }

@@ -39,6 +39,8 @@ pub(super) struct UvCode {
     pub(super) complete_held: fn(&mut TriangleSetup, &SmallTriangle<'_>, &Scaling, bool),
     /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.
     pub(super) complete: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &Scaling, Option<i32>),
+    /// How they are packed: with sides of 2^this texels, if they are.
+    pub(super) pack: fn(&mut Needs, Option<[u8; 2]>),
     /// Where their scale is applied.
     pub(super) scale: fn(&Needs, &[&ScreenVertex; 3], &mut Scaling),
 }
@@ -101,6 +103,23 @@ impl Needs {
     #[inline]
     pub(crate) fn is_exactly_straight(&self, least: u32, most: u32) -> bool {
         least == most || matches!(self.straight, Straight::Always)
+    }
+
+    /// Sets how u and v are packed, if they are read: with sides of 2^this texels, or `None`. Needs have no packing before.
+    #[inline]
+    pub(crate) fn pack(&mut self, log2: Option<[u8; 2]>) {
+        if let Some(uv) = &self.code.uv {
+            (uv.pack)(self, log2);
+        }
+    }
+
+    /// [`UvCode::pack`].
+    #[inline(never)]
+    pub(super) fn pack_uv(&mut self, log2: Option<[u8; 2]>) {
+        let log2 = log2.map(|log2| log2.map(u32::from));
+        self.unscaled_packing = Packing::new(log2, self.scale.into(), Inputs::Uv);
+        self.packing = self.unscaled_packing.finer(self.scale.into());
+        self.margins = self.packing.margins();
     }
 
     /// Whether u and v are read.
