@@ -33,9 +33,7 @@ impl TriangleSetup {
         }
         self.set_corners(vertices);
         (self.is_held, self.longest) = (true, STRAIGHT);
-        if needs.reads_color() {
-            self.set_gray(vertices, needs.gray);
-        }
+        needs.set_gray(self, vertices);
         let (scaling, attributes) = (needs.scaled_at_once(), &mut self.attributes);
         let are_set = needs.each_attribute(&scaling, vertices, self.gray, |i, at, _| {
             let Some(attribute) = attributes.get_mut(i) else {

@@ -25,6 +25,8 @@ pub(crate) struct InputCode {
     /// All planes of any triangle.
     pub(super) any: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs),
     pub(super) uv: Option<UvCode>,
+    /// Whether all colours of a triangle are grey, if they are read.
+    pub(super) are_gray: Option<fn(&[&ScreenVertex; 3]) -> bool>,
     /// Colours of a small triangle, as plain. Returns as `small` does.
     pub(super) small_color: Option<fn(&mut TriangleSetup, &SmallTriangle<'_>, ColorBend) -> bool>,
 }
@@ -126,6 +128,14 @@ impl Needs {
     #[inline]
     pub(crate) fn reads_uv(&self) -> bool {
         matches!(self.code.inputs, Inputs::Uv | Inputs::UvColor)
+    }
+
+    /// Finds out whether all colours are grey, if they are read and that is not known.
+    #[inline]
+    pub(super) fn set_gray(&self, setup: &mut TriangleSetup, vertices: &[&ScreenVertex; 3]) {
+        if let Some(are_gray) = self.code.are_gray {
+            setup.gray = self.gray || are_gray(vertices);
+        }
     }
 
     /// Whether the colour is read.
