@@ -154,10 +154,8 @@ impl Needs {
     #[cold]
     #[inline(never)]
     pub(super) fn are_narrow(&self, vertices: &[&ScreenVertex; 3]) -> bool {
-        let [a, b, c] = vertices.map(|vertex| [vertex.u.to_bits(), vertex.v.to_bits()]);
-        [[a, b], [a, c], [b, c]]
-            .iter()
-            .all(|[a, b]| (0..2).all(|i| (a[i].abs_diff(b[i]) >> (27 - self.scale)) == 0))
+        let size = size_of_uv(vertices, 0) | size_of_uv(vertices, 1);
+        size >> (27 - self.scale) == 0
     }
 
     /// All of the scale at the end, or for a scale of 1.
@@ -176,13 +174,9 @@ impl Needs {
     #[cold]
     #[inline(never)]
     pub(super) fn scale_for(&self, vertices: &[&ScreenVertex; 3], scaling: &mut Scaling) {
-        let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        let finer = [0, 1].map(|i| {
-            let size =
-                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
-            // Differences stay below 2²⁹.
-            zeros_of(size).saturating_sub(3).min(self.scale.into()) as u8
-        });
+        // Differences stay below 2²⁹.
+        let fitting = |size: u32| zeros_of(size).saturating_sub(3).min(self.scale.into()) as u8;
+        let finer = [fitting(size_of_uv(vertices, 0)), fitting(size_of_uv(vertices, 1))];
         self.set_scaled(finer, scaling);
     }
 
@@ -227,6 +221,14 @@ impl Needs {
         }
         true
     }
+}
+
+/// The bits that are in any difference of u or of v between corners.
+#[cold]
+#[inline(never)]
+fn size_of_uv(vertices: &[&ScreenVertex; 3], i: usize) -> u32 {
+    let [a, b, c] = vertices.map(|vertex| (if i == 0 { vertex.u } else { vertex.v }).to_bits());
+    a.abs_diff(b) | a.abs_diff(c) | b.abs_diff(c)
 }
 
 /// Input `i` at the corners, I16F16: u, v or a channel.
