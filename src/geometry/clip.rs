@@ -20,7 +20,7 @@ use super::screen::{GUARD, ScreenVertex};
 use super::transform::{FINE, ToClip, focal_log2, least_w};
 use crate::math::recip::{Reciprocal, looked_up};
 use crate::num::{I12F4, I16F16, U1F31, mul_high_short, normalised, wide, zeros_of};
-use crate::scene::{Bounds, Projection, Vertex};
+use crate::scene::{Bounds, Projection, Vertex, Viewport};
 use core::hint::black_box;
 use core::ops::RangeInclusive;
 
@@ -180,7 +180,7 @@ impl Clip {
         projection: &Projection,
     ) -> Option<[i32; 3]> {
         let center @ [.., w] = to_clip.place_all(bounds.center);
-        let (viewport, radius) = (&projection.viewport, bounds.radius.unsigned_abs());
+        let radius = bounds.radius.unsigned_abs();
         let [near, far] = [projection.near, projection.far].map(|at| self.distance_of(at) >> FINE);
         let [before, beyond] = [near - i64::from(w), i64::from(w) - far];
         // Between planes that coincide, or are the wrong way round, there is nothing; rounded, it might have an area.
@@ -190,29 +190,29 @@ impl Clip {
         {
             return None;
         }
-        let sides = [(viewport.left, viewport.width), (viewport.top, viewport.height)];
-        let is_seen = (0..4).all(|i| {
-            let (axis, is_end) = (i >> 1, i & 1 != 0);
-            let (start, length) = sides[axis];
-            let side = i32::from(start) + if is_end { i32::from(length) } else { 0 };
-            let slope = side * 16 - projection.center[axis];
-            // Not unrolled.
-            black_box(());
-            self.reaches(to_clip, [center[axis], w], radius, (axis, is_end, slope))
-        });
+        // Hidden, so that the loop is not unrolled.
+        let is_seen =
+            (0..black_box(4)).all(|side| self.reaches(to_clip, &center, radius, (projection, side)));
         is_seen.then_some(center)
     }
 
     /// Whether bounds reach over a side of the viewport: a plane through the eye (or along the line of sight) that lies at
-    /// a slope of side : focal length, in 1/16 px.
-    #[inline(never)]
+    /// a slope of side : focal length, in 1/16 px. Sides are left, right, top and bottom.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
     fn reaches(
         &self,
         to_clip: &ToClip,
-        [across, w]: [i32; 2],
+        &[x, y, w]: &[i32; 3],
         radius: u32,
-        (axis, is_end, slope): (usize, bool, i32),
+        (projection, side): (&Projection, usize),
     ) -> bool {
+        let Viewport { left, top, width, height } = projection.viewport;
+        let (axis, is_end) = (side >> 1, side & 1 != 0);
+        let (start, length, across) = if axis == 0 { (left, width, x) } else { (top, height, y) };
+        let [middle_x, middle_y] = projection.center;
+        let side = i32::from(start) + if is_end { i32::from(length) } else { 0 };
+        let slope = side * 16 - if axis == 0 { middle_x } else { middle_y };
         let outside = (i64::from(across) << self.scale()) - wide(self.divisor(w), slope);
         let outside = if is_end { outside } else { -outside };
         to_clip.reaches(outside, radius, (axis, self.scale(), if self.flat() != 0 { 0 } else { slope }))

@@ -39,6 +39,7 @@
 //! `raster::folded` finds row by row what each draws. That is slow, and rare: only what is thinner than 1/8 px can fold.
 
 use super::screen::ScreenVertex;
+use core::hint::black_box;
 
 /// The vertex around which no triangle of the fan is turned over, or the least area is; and whether any area is, so that the
 /// polygon is folded.
@@ -61,25 +62,30 @@ pub(super) fn center(polygon: &[ScreenVertex]) -> (usize, bool) {
 }
 
 /// Twice the area, in 1/256 px², of those triangles of the fan around a vertex whose winding is not that of the whole
-/// polygon. The signed areas add up to that of the polygon, the unsigned ones to that and twice what is turned over.
+/// polygon: of the two windings that of the lesser area.
 #[inline(never)]
 fn turned_over(polygon: &[ScreenVertex], first: usize) -> u64 {
-    let Some((before, from)) = polygon.split_at_checked(first) else {
+    let place =
+        |i: usize| polygon.get(i).map(|vertex| [vertex.x, vertex.y].map(|at| i32::from(at.to_bits())));
+    let Some([x, y]) = place(first) else {
         return 0;
     };
-    let mut around =
-        from.iter().chain(before).map(|vertex| [vertex.x, vertex.y].map(|at| i32::from(at.to_bits())));
-    let Some([x, y]) = around.next() else {
-        return 0;
-    };
-    let (mut sum, mut size) = (0_i64, 0);
-    let mut last = [x, y];
-    for [bx, by] in around {
+    // Those of either winding.
+    let (mut left, mut right) = (0_u64, 0_u64);
+    let (mut last, mut i) = ([x, y], first);
+    for _ in 1..polygon.len() {
+        i = if i + 1 < polygon.len() { i + 1 } else { 0 };
+        let Some([bx, by]) = place(i) else {
+            return 0;
+        };
         let [ax, ay] = last;
-        let area = i64::from((ax - x) * (by - y) - (ay - y) * (bx - x));
-        (sum, size, last) = (sum + area, size + area.unsigned_abs(), [bx, by]);
+        let area = (ax - x) * (by - y) - (ay - y) * (bx - x);
+        *(if area < 0 { &mut left } else { &mut right }) += u64::from(area.unsigned_abs());
+        last = [bx, by];
+        // Not unrolled.
+        black_box(());
     }
-    (size - sum.unsigned_abs()) / 2
+    left.min(right)
 }
 
 /// The corners of a triangle of the fan around the first vertex; `number` is 0 … corners − 3. `None` beyond that.

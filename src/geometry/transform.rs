@@ -12,13 +12,12 @@
 //! A mesh may reach 16 000 units far and still be cut at a near plane 1/256 of a unit before the eye: no 32 bits hold both. What
 //! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
-use crate::math::Pose;
+use crate::math::{Pose, dot};
 use crate::num::{
-    I4F12, I16F16, U10F22, leading_zeros, mul_long, mul_round, shift_round, wide, wide_unsigned, zeros_of,
+    I4F12, I16F16, U10F22, leading_zeros, mul_long, shift_round, wide, wide_unsigned, zeros_of,
 };
 use crate::scene::{Bounds, Projection, Viewport};
 use core::array;
-use core::hint::black_box;
 
 /// The exponent k with focal length = 2^(k−1) … 2^k pixels, −3 … 13.
 pub(crate) const fn focal_log2(focal: I16F16) -> i32 {
@@ -56,16 +55,31 @@ struct Row {
     translation: i32,
 }
 
-impl Row {
-    /// Sets the elements, from a row of the matrix without its last `excess` bits, times the focal length's mantissa if that is not 0.
-    #[inline(never)]
-    fn set(&mut self, matrix: &[i64; 3], focal: i32, [excess, shift]: [i32; 2]) {
-        for (to, element) in self.elements.iter_mut().zip(matrix) {
-            // 30 bits; then 15 fraction bits.
-            *to = halves(((shortened(*element, excess, focal) >> shift) + 1) >> 1);
-        }
-    }
+/// What all rows of a mesh are rounded to.
+struct Unit {
+    /// How many bits more than 30 the elements have.
+    excess: i32,
+    /// How many of the 30 bits more than 15 fraction bits, less one.
+    shift: i32,
+    /// The focal length's mantissa, by which the rows for x and y are multiplied.
+    focal: i32,
+    /// Whether clipping needs more bits.
+    is_fine: bool,
+    /// Fraction bits of clip coordinates.
+    bits: i32,
+}
 
+impl Unit {
+    /// An element, times the focal length's mantissa if that is not 0. Out of line on Armv6-M: there is one copy for all elements.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+    fn rounded(&self, exact: &Split, focal: i32) -> i32 {
+        // 30 bits; then 15 fraction bits.
+        halves(((shortened(exact.value(), self.excess, focal) >> self.shift) + 1) >> 1)
+    }
+}
+
+impl Row {
     #[inline(always)]
     fn place(&self, position: [i32; 3]) -> i32 {
         let (mut whole, mut rest) = (self.translation, 0);
@@ -74,6 +88,13 @@ impl Row {
             rest += at * i32::from(halves as i16);
         }
         whole + (rest >> 15)
+    }
+
+    /// The same, out of line on Armv6-M: there is one copy for all rows.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+    fn place_apart(&self, position: &[I4F12; 3]) -> i32 {
+        self.place(position.map(|at| i32::from(at.to_bits())))
     }
 
     /// The same with [`FINE`] bits more.
@@ -97,19 +118,12 @@ impl Row {
 /// leaves is within ¾ of 2^[`FINE`], and three of it times 2¹⁵ steps are below 2³¹.
 #[cold]
 #[inline(never)]
-fn set_rests(
-    rests: &mut [i16; 4],
-    row: &Row,
-    matrix: &[i64; 3],
-    translation: i64,
-    focal: i32,
-    unit_bits: i32,
-) {
+fn set_rests(rests: &mut [i16; 4], row: &Row, exact: &[Split; 4], focal: i32, unit_bits: i32) {
     // Elements are steps of 2⁻¹² with 15 fraction bits.
-    for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(matrix) {
-        *to = rest(*value, 33 - unit_bits, focal, element(halves));
+    for ((to, halves), value) in rests.iter_mut().zip(row.elements).zip(exact) {
+        *to = rest(value.value(), 33 - unit_bits, focal, element(halves));
     }
-    rests[3] = rest(translation, 16 - unit_bits, focal, row.translation);
+    rests[3] = rest(exact[3].value(), 16 - unit_bits, focal, row.translation);
 }
 
 #[inline(never)]
@@ -162,13 +176,11 @@ impl ToClip {
     /// that it is there once. Returns the fraction bits of clip coordinates, 10 … 34.
     #[inline(never)]
     pub(crate) fn set(&mut self, projection: &Projection, camera: &Pose, pose: &Pose) -> i32 {
-        // Hidden: the routine that clears what has 64 bits would be linked for this alone.
-        let none = black_box(0);
-        let mut exact = Exact { matrix: [[none; 3]; 3], translation: [none; 3], all: [0; 2] };
+        let mut exact = Exact { rows: [[Split::ZERO; 4]; 3], all: [Split::ZERO; 2] };
         for row in 0..3 {
             exact.set_row(row, camera, pose);
         }
-        let [of_matrix, of_translation] = exact.all.map(|all| 64 - leading_zeros(all) as i32);
+        let [of_matrix, of_translation] = exact.all.map(|all| 64 - leading_zeros(all.value() as u64) as i32);
         let excess = of_matrix - 30;
         let fraction_bits = 50 - excess;
         // The finest unit in which neither the translation (2²⁹) nor the sums (3·2²⁸) are too large.
@@ -183,26 +195,32 @@ impl ToClip {
         let unit_bits = unit_bits.min(far_bits);
         let focal = projection.focal.to_bits();
         let focal = focal << (zeros_of(focal as u32) - 1); // 2³⁰ … 2³¹ − 1
-        let focal = [focal, focal, 0];
         // At least 1.
         let shift = (fraction_bits - 4 - unit_bits).min(31);
-        for ((row, focal), (matrix, translation)) in
-            self.rows.iter_mut().zip(focal).zip(exact.matrix.iter().zip(exact.translation))
-        {
-            row.set(matrix, focal, [excess, shift]);
-            row.translation = shortened(translation, 30 - unit_bits, focal);
-        }
         let least = least_w(projection, unit_bits);
         // The near plane may be nearer than that, in 1/65536.
         let is_near = i64::from(projection.near.to_bits()) < (i64::from(least) << 16) >> unit_bits;
         let is_fine = least == i32::MAX || is_near;
-        if is_fine {
-            for (row, focal) in focal.into_iter().enumerate() {
-                let (matrix, translation) = (&exact.matrix[row], exact.translation[row]);
-                set_rests(&mut self.rests[row], &self.rows[row], matrix, translation, focal, unit_bits);
-            }
+        let unit = Unit { excess, shift, focal, is_fine, bits: unit_bits };
+        for row in 0..3 {
+            self.set_row(row, &exact, &unit);
         }
         unit_bits
+    }
+
+    /// Sets the row for x, y or w.
+    #[inline(never)]
+    fn set_row(&mut self, axis: usize, exact: &Exact, unit: &Unit) {
+        let (row, exact) = (&mut self.rows[axis], &exact.rows[axis]);
+        let [.., translation] = *exact;
+        let focal = if axis < 2 { unit.focal } else { 0 };
+        for (to, element) in row.elements.iter_mut().zip(exact) {
+            *to = unit.rounded(element, focal);
+        }
+        row.translation = shortened(translation.value(), 30 - unit.bits, focal);
+        if unit.is_fine {
+            set_rests(&mut self.rests[axis], row, exact, focal, unit.bits);
+        }
     }
 
     /// Whether a sphere of the mesh, whose centre lies `outside` of a plane, reaches over it, give or take four clip units for
@@ -292,8 +310,7 @@ impl ToClip {
     /// Along all.
     #[inline(never)]
     pub(crate) fn place_all(&self, position: [I4F12; 3]) -> [i32; 3] {
-        let position = position.map(|at| i32::from(at.to_bits()));
-        self.rows.each_ref().map(|row| row.place(position))
+        self.rows.each_ref().map(|row| row.place_apart(&position))
     }
 }
 
@@ -323,14 +340,38 @@ fn root_or_more(square: u32) -> u32 {
     (least + 2 + halved) >> halved
 }
 
+/// A number of 64 bits, as lower and upper half. (An `i64` is aligned to 8 bytes, and to clear some takes a routine of its own.)
+#[derive(Clone, Copy)]
+pub(super) struct Split([u32; 2]);
+
+impl Split {
+    const ZERO: Self = Self([0; 2]);
+
+    pub(super) fn new(value: i64) -> Self {
+        Self([value as u32, (value >> 32) as u32])
+    }
+
+    #[inline(always)]
+    pub(super) fn value(self) -> i64 {
+        let Self([lower, upper]) = self;
+        (u64::from(upper) << 32 | u64::from(lower)) as i64
+    }
+
+    /// Sets it, and adds the bits that are in its size to `all`. Out of line on Armv6-M, as what calls it is unrolled.
+    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+    fn set(&mut self, value: i64, all: &mut Self) {
+        *self = Self::new(value);
+        *all = Self::new(all.value() | value.unsigned_abs() as i64);
+    }
+}
+
 /// The matrix before it is rounded, without the focal length.
 struct Exact {
-    /// 28 fraction bits (4.0 at most) times 22 are 50.
-    matrix: [[i64; 3]; 3],
-    /// 14 times 16 are 30.
-    translation: [i64; 3],
-    /// The bits that are in any of either.
-    all: [u64; 2],
+    /// Elements: 28 fraction bits (4.0 at most) times 22 are 50. Translation: 14 times 16 are 30.
+    rows: [[Split; 4]; 3],
+    /// The bits that are in any element, and in any translation.
+    all: [Split; 2],
 }
 
 impl Exact {
@@ -338,23 +379,15 @@ impl Exact {
     /// clip space y is down and w along −z.
     #[inline(never)]
     fn set_row(&mut self, row: usize, camera: &Pose, pose: &Pose) {
-        let axis =
-            camera.rotation.map(|r| i32::from(r[row].to_bits())).map(|at| if row == 0 { at } else { -at });
-        let [to, from] = [pose, camera].map(|pose| along(axis, pose.translation.bits()));
-        self.translation[row] = to - from;
-        self.all[1] |= (to - from).unsigned_abs();
-        for (column, to) in self.matrix[row].iter_mut().enumerate() {
-            *to = scaled_axis(axis, pose, column);
-            self.all[0] |= to.unsigned_abs();
+        let sign = if row == 0 { 1 } else { -1 };
+        let axis = camera.rotation.map(|r| i32::from(r[row].to_bits()) * sign);
+        let [to, from] = [pose, camera].map(|pose| dot(axis, pose.translation.bits()));
+        let (exact, all) = (&mut self.rows[row], &mut self.all);
+        exact[3].set(to - from, &mut all[1]);
+        for (column, to) in exact.iter_mut().enumerate().take(3) {
+            to.set(scaled_axis(axis, pose, column), &mut all[0]);
         }
     }
-}
-
-/// A vector's length along an axis.
-#[inline(never)]
-fn along(axis: [i32; 3], vector: [i32; 3]) -> i64 {
-    let [x, y, z] = axis;
-    wide(x, vector[0]) + wide(y, vector[1]) + wide(z, vector[2])
 }
 
 /// How far an axis of a pose reaches along another axis, times its scale.
@@ -377,7 +410,7 @@ fn scaled(value: i32, scale: U10F22) -> i64 {
 fn shortened(value: i64, dropped: i32, focal: i32) -> i32 {
     let value =
         if dropped >= 0 { shift_round(value, dropped.min(63) as u32) } else { value << -dropped.max(-63) };
-    if focal != 0 { mul_round::<31>(value as i32, focal) } else { value as i32 }
+    if focal != 0 { ((wide(value as i32, focal) + (1 << 30)) >> 31) as i32 } else { value as i32 }
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ use super::screen::ScreenVertex;
 use super::transform::ToClip;
 use crate::math::Pose;
 use crate::math::recip::looked_up;
-use crate::num::{I12F4, U1F31, mul_20, normalised, zeros_of};
+use crate::num::{I12F4, U1F31, mul_20, normalise, normalised, zeros_of};
 use crate::scene::{Bounds, Projection, Vertex};
 
 /// Places the vertices of one mesh.
@@ -83,19 +83,22 @@ impl Placing {
         }
         let radius = bounds.radius.unsigned_abs();
         let reach = to_clip.reach(2, radius);
-        let (nearest, farthest) = (center[2].saturating_sub(reach), center[2].saturating_add(reach));
-        if nearest >> 2 < clip.least || farthest > clip.far {
+        let nearest = center[2].saturating_sub(reach);
+        // Center and reach are within 31 bits without the sign, so that sums of their sizes fit 32.
+        const MOST: u32 = i32::MAX as u32;
+        let farthest = center[2].unsigned_abs().wrapping_add(reach as u32).min(MOST);
+        if nearest >> 2 < clip.least || farthest as i32 > clip.far {
             return;
         }
         let across =
-            [0, 1].map(|axis| center[axis].saturating_abs().saturating_add(to_clip.reach(axis, radius)));
-        let across = across[0].max(across[1]);
+            |axis: usize| center[axis].unsigned_abs().wrapping_add(to_clip.reach(axis, radius) as u32);
+        let across = across(0).max(across(1)).min(MOST);
         // Positive, so that one bit is left for the sign of x and y.
-        let bits = (zeros_of(across as u32) - 1).min(MOST_BITS);
-        let bits_of_w = zeros_of(farthest as u32).min(MOST_BITS);
+        let bits = (zeros_of(across) - 1).min(MOST_BITS);
+        let bits_of_w = zeros_of(farthest).min(MOST_BITS);
 
         // Of the nearest vertex.
-        let (w, zeros) = normalised((nearest as u32) << bits_of_w);
+        let (w, zeros) = normalise((nearest as u32) << bits_of_w);
         let inverse = looked_up(w);
         let shift = 18 + bits as i32 - bits_of_w as i32 - clip.scale();
         let depth_shift = clip.depth_zeros() - 2 - bits_of_w as i32;
@@ -106,7 +109,7 @@ impl Placing {
         let most =
             |of: i32, shift: i32| (mul_20(of, (inverse >> 11) + 1) >> (shift as u32 - zeros)) as u32 + 1;
         // 1/16 px from the line of sight.
-        let distance = (most(across << bits, shift) >> FINER) + 1;
+        let distance = (most((across << bits) as i32, shift) >> FINER) + 1;
         let room = clip.center.iter().fold(FARTHEST, |room, at| room.min(CUT_AT - (at >> FINER).abs() - 1));
         if room < 0 || distance > room as u32 {
             return;

@@ -57,7 +57,9 @@ impl Turn {
     }
 
     /// The sine, within 0.66 of its last bit (2⁻¹⁴) of the exact one; exact at multiples of a quarter turn.
+    // Out of line: whatever turns a pose asks for two.
     #[must_use]
+    #[inline(never)]
     pub const fn sin(self) -> I2F14 {
         let folded = self.0 & (2 * QUARTER - 1);
         let folded = if folded > QUARTER { 2 * QUARTER - folded } else { folded } as i32;

@@ -33,9 +33,8 @@ impl TriangleSetup {
         }
         self.set_corners(vertices);
         (self.is_held, self.longest) = (true, STRAIGHT);
-        if needs.reads_color() {
-            self.set_gray(vertices, needs.gray);
-        }
+        needs.set_gray(self, vertices);
+        self.bends = [[0; 3]; 2];
         let (scaling, attributes) = (needs.scaled_at_once(), &mut self.attributes);
         let are_set = needs.each_attribute(&scaling, vertices, self.gray, |i, at, _| {
             let Some(attribute) = attributes.get_mut(i) else {
@@ -49,7 +48,6 @@ impl TriangleSetup {
             gradients.set_plane(&mut attribute.plane, origin, &rise.map(|rise| rise >> 8));
             true
         });
-        self.bends = [[0; 3]; 2];
         if are_set && let Some(uv) = &needs.code.uv {
             (uv.complete_held)(self, small, &scaling, is_level);
         }

@@ -7,7 +7,7 @@
 //! Where the inputs are known when a program is compiled, as those of materials are, only their code is linked.
 
 use super::needs::{InputCode, Needs, UvCode};
-use super::triangle::TriangleSetup;
+use super::triangle::{TriangleSetup, are_gray};
 use crate::geometry::Inputs;
 
 impl InputCode {
@@ -16,11 +16,16 @@ impl InputCode {
         small: TriangleSetup::set_small_depth,
         any: TriangleSetup::set_depth,
         uv: None,
+        are_gray: None,
         small_color: None,
     };
     const UV: Self = Self { inputs: Inputs::Uv, uv: Some(UvCode::ALL), ..Self::SOME };
-    const COLOR: Self =
-        Self { inputs: Inputs::Color, small_color: Some(TriangleSetup::set_small_colors), ..Self::SOME };
+    const COLOR: Self = Self {
+        inputs: Inputs::Color,
+        are_gray: Some(are_gray),
+        small_color: Some(TriangleSetup::set_small_colors),
+        ..Self::SOME
+    };
     const UV_COLOR: Self = Self { inputs: Inputs::UvColor, uv: Some(UvCode::ALL), ..Self::COLOR };
     const SOME: Self = Self { small: TriangleSetup::set_small, any: TriangleSetup::set, ..Self::NONE };
 
@@ -42,6 +47,7 @@ impl UvCode {
         bend: TriangleSetup::bend,
         complete_held: TriangleSetup::complete_held_uv,
         complete: TriangleSetup::settle,
+        pack: Needs::pack_uv,
         scale: Needs::scale_for,
     };
 }

@@ -25,6 +25,8 @@ pub(crate) struct InputCode {
     /// All planes of any triangle.
     pub(super) any: fn(&mut TriangleSetup, &[&ScreenVertex; 3], u32, &Needs),
     pub(super) uv: Option<UvCode>,
+    /// Whether all colours of a triangle are grey, if they are read.
+    pub(super) are_gray: Option<fn(&[&ScreenVertex; 3]) -> bool>,
     /// Colours of a small triangle, as plain. Returns as `small` does.
     pub(super) small_color: Option<fn(&mut TriangleSetup, &SmallTriangle<'_>, ColorBend) -> bool>,
 }
@@ -39,6 +41,8 @@ pub(super) struct UvCode {
     pub(super) complete_held: fn(&mut TriangleSetup, &SmallTriangle<'_>, &Scaling, bool),
     /// Completes those of any triangle whose attributes are linear; with the fraction bits of slopes if they are exactly so.
     pub(super) complete: fn(&mut TriangleSetup, &[&ScreenVertex; 3], &Scaling, Option<i32>),
+    /// How they are packed: with sides of 2^this texels, if they are.
+    pub(super) pack: fn(&mut Needs, Option<[u8; 2]>),
     /// Where their scale is applied.
     pub(super) scale: fn(&Needs, &[&ScreenVertex; 3], &mut Scaling),
 }
@@ -105,10 +109,35 @@ impl Needs {
         least == most || matches!(self.straight, Straight::Always)
     }
 
+    /// Sets how u and v are packed, if they are read: with sides of 2^this texels, or `None`. Needs have no packing before.
+    #[inline]
+    pub(crate) fn pack(&mut self, log2: Option<[u8; 2]>) {
+        if let Some(uv) = &self.code.uv {
+            (uv.pack)(self, log2);
+        }
+    }
+
+    /// [`UvCode::pack`].
+    #[inline(never)]
+    pub(super) fn pack_uv(&mut self, log2: Option<[u8; 2]>) {
+        let log2 = log2.map(|log2| log2.map(u32::from));
+        self.unscaled_packing = Packing::new(log2, self.scale.into(), Inputs::Uv);
+        self.packing = self.unscaled_packing.finer(self.scale.into());
+        self.margins = self.packing.margins();
+    }
+
     /// Whether u and v are read.
     #[inline]
     pub(crate) fn reads_uv(&self) -> bool {
         matches!(self.code.inputs, Inputs::Uv | Inputs::UvColor)
+    }
+
+    /// Finds out whether all colours are grey, if they are read and that is not known.
+    #[inline]
+    pub(super) fn set_gray(&self, setup: &mut TriangleSetup, vertices: &[&ScreenVertex; 3]) {
+        if let Some(are_gray) = self.code.are_gray {
+            setup.gray = self.gray || are_gray(vertices);
+        }
     }
 
     /// Whether the colour is read.
@@ -127,10 +156,8 @@ impl Needs {
     #[cold]
     #[inline(never)]
     pub(super) fn are_narrow(&self, vertices: &[&ScreenVertex; 3]) -> bool {
-        let [a, b, c] = vertices.map(|vertex| [vertex.u.to_bits(), vertex.v.to_bits()]);
-        [[a, b], [a, c], [b, c]]
-            .iter()
-            .all(|[a, b]| (0..2).all(|i| (a[i].abs_diff(b[i]) >> (27 - self.scale)) == 0))
+        let size = size_of_uv(vertices, 0) | size_of_uv(vertices, 1);
+        size >> (27 - self.scale) == 0
     }
 
     /// All of the scale at the end, or for a scale of 1.
@@ -149,13 +176,9 @@ impl Needs {
     #[cold]
     #[inline(never)]
     pub(super) fn scale_for(&self, vertices: &[&ScreenVertex; 3], scaling: &mut Scaling) {
-        let [a, b, c] = vertices.map(|vertex| [vertex.u, vertex.v].map(|uv| uv.to_bits()));
-        let finer = [0, 1].map(|i| {
-            let size =
-                (b[i] - a[i]).unsigned_abs() | (c[i] - a[i]).unsigned_abs() | (c[i] - b[i]).unsigned_abs();
-            // Differences stay below 2²⁹.
-            zeros_of(size).saturating_sub(3).min(self.scale.into()) as u8
-        });
+        // Differences stay below 2²⁹.
+        let fitting = |size: u32| zeros_of(size).saturating_sub(3).min(self.scale.into()) as u8;
+        let finer = [fitting(size_of_uv(vertices, 0)), fitting(size_of_uv(vertices, 1))];
         self.set_scaled(finer, scaling);
     }
 
@@ -200,6 +223,14 @@ impl Needs {
         }
         true
     }
+}
+
+/// The bits that are in any difference of u or of v between corners.
+#[cold]
+#[inline(never)]
+fn size_of_uv(vertices: &[&ScreenVertex; 3], i: usize) -> u32 {
+    let [a, b, c] = vertices.map(|vertex| (if i == 0 { vertex.u } else { vertex.v }).to_bits());
+    a.abs_diff(b) | a.abs_diff(c) | b.abs_diff(c)
 }
 
 /// Input `i` at the corners, I16F16: u, v or a channel.

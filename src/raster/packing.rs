@@ -43,14 +43,17 @@ pub(crate) struct Packing {
 const _: () = assert!(size_of::<Packing>() == 6);
 
 impl Packing {
-    /// For a texture with sides of 2^`log2` texels, or `None` if it is not packed.
-    #[inline(never)]
+    /// Where u and v are not read.
+    pub(crate) const NONE: Self = Self { unit_log2: 0, inset: 0, steps: 0, turn_log2: 31 };
+
+    /// For a texture with sides of 2^`log2` texels, or `None` if it is not packed. The scale is no larger than that.
+    #[inline]
     pub(crate) fn new(log2: Option<[u32; 2]>, scale_log2: u32, inputs: Inputs) -> Self {
         if !matches!(inputs, Inputs::Uv | Inputs::UvColor) {
-            return Self { unit_log2: 0, inset: 0, steps: 0, turn_log2: 31 };
+            return Self::NONE;
         }
         let Some([a, b]) = log2 else {
-            return Self { unit_log2: 0, inset: 1, steps: 0, turn_log2: 31 };
+            return Self { inset: 1, ..Self::NONE };
         };
         let steps = if a.max(b) > 6 { LARGE.into() } else { 63 };
         let unit_log2 = (a.max(b).wrapping_sub(scale_log2) & 15) as u8;

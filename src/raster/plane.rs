@@ -5,6 +5,7 @@
 //! - Assumes: inside the triangle values fit 32 bits. Far outside they may wrap, and wrap back on the way in.
 
 use crate::num::mul_round;
+use core::hint::black_box;
 
 /// A linear function on the screen, in integers that wrap. A sliver (see [`setup`](super::setup)) keeps values at its corners
 /// in the same fields.
@@ -61,7 +62,9 @@ impl Plane {
     ) -> [i32; 2] {
         let ([right, down], [left, top]) = (self.steps, first.map(|at| at * 16 + 8));
         let mut errors = [0; 2];
-        for (&[x, y], value) in corners.iter().zip(values) {
+        // Slices of lengths that are hidden, so that the loop is not unrolled.
+        for (&[x, y], value) in black_box(&corners[..]).iter().zip(black_box(&values[..])) {
+            black_box(());
             let (x, y) = (i32::from(x), i32::from(y));
             // From the centre of the first pixel, 16 times.
             let way = right.wrapping_mul(x - left).wrapping_add(down.wrapping_mul(y - top));

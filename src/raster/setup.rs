@@ -113,9 +113,7 @@ impl TriangleSetup {
         {
             (uv.scale)(needs, vertices, &mut scaling);
         }
-        if needs.reads_color() {
-            self.set_gray(vertices, needs.gray);
-        }
+        needs.set_gray(self, vertices);
         let is_exact = needs.is_exactly_straight(q_min, q[0]);
         self.straight = match needs.straight {
             Straight::Below(limit) if !is_exact => self.is_straight(&q, limit.get()),

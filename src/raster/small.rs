@@ -47,7 +47,7 @@ use super::gradients::Gradients;
 use super::needs::{ColorBend, Needs, SmallTriangle};
 use super::packing::LARGE;
 use super::straight::Straight;
-use super::triangle::{Planes, STRAIGHT, TriangleSetup};
+use super::triangle::{Planes, STRAIGHT, TriangleSetup, are_gray};
 use crate::geometry::{ScreenVertex, position};
 
 impl TriangleSetup {
@@ -171,7 +171,7 @@ impl TriangleSetup {
     #[inline(never)]
     pub(super) fn set_small_colors(&mut self, small: &SmallTriangle<'_>, bend: ColorBend) -> bool {
         let &SmallTriangle { vertices, needs, ref gradients, .. } = small;
-        self.set_gray(vertices, needs.gray);
+        self.gray = needs.gray || are_gray(vertices);
         let is_gray = self.gray;
         let colors = if needs.reads_uv() { &mut self.attributes[2..] } else { &mut self.attributes[..] };
         for (i, attribute) in (0..3).zip(colors) {

@@ -167,12 +167,6 @@ impl TriangleSetup {
         (self.area, self.area_zeros) = (area.mantissa, area.zeros as u8);
     }
 
-    /// Finds out whether all colours are grey, if that is not known.
-    #[inline]
-    pub(super) fn set_gray(&mut self, vertices: &[&ScreenVertex; 3], is_known: bool) {
-        self.gray = is_known || are_gray(vertices);
-    }
-
     /// near/w scaled to 31 bits; for the division. Of a bent triangle that is not small.
     #[inline(always)]
     pub(crate) fn q(&self) -> Plane {
@@ -344,7 +338,7 @@ impl TriangleSetup {
 
 /// Whether all colours at the corners are greys.
 #[inline(never)]
-fn are_gray(vertices: &[&ScreenVertex; 3]) -> bool {
+pub(super) fn are_gray(vertices: &[&ScreenVertex; 3]) -> bool {
     vertices.iter().all(|vertex| is_gray(vertex.color))
 }
 

@@ -20,11 +20,11 @@ impl<W: Copy> Fill<W> for Even<W> {
     }
 
     fn straight(&self, pixels: &mut [W], _: &Curve) {
-        pixels.fill(self.0);
+        fill(pixels, self.0);
     }
 
     fn table(&self, pixels: &mut [W], _: &Curve) {
-        pixels.fill(self.0);
+        fill(pixels, self.0);
     }
 }
 
@@ -55,6 +55,12 @@ impl<W: Copy + 'static> FillRow<0> for Even<W> {
     fn row(&self, pixels: &mut [W], (): (), (): ()) {
         draw_row(pixels, (), (), |()| self.0);
     }
+}
+
+/// Not inlined: among the rows' loop it would have no registers, and take twice as long on a Cortex-M0+. And so it is there once.
+#[inline(never)]
+pub(super) fn fill<W: Copy>(pixels: &mut [W], word: W) {
+    pixels.fill(word);
 }
 
 #[inline(never)]

@@ -7,6 +7,7 @@
 //! (A small triangle is drawn at one go instead, see [`patch`](super::patch).)
 
 use super::cover::Cover;
+use super::even::fill;
 use super::fill::Fill;
 use super::fog::Fogging;
 use super::perspective::Perspective;
@@ -55,12 +56,6 @@ impl<W: Copy> DrawRun<W> for Even<W> {
     fn again(&mut self) -> Self {
         Self(self.0)
     }
-}
-
-/// Not inlined: among the rows' loop it would have no registers, and take twice as long on a Cortex-M0+.
-#[inline(never)]
-fn fill<W: Copy>(pixels: &mut [W], word: W) {
-    pixels.fill(word);
 }
 
 /// By a fill, and fog on it in place.

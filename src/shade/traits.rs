@@ -65,22 +65,20 @@ impl Traits {
     /// may all be grey.
     #[inline(never)]
     pub(crate) fn needs<F: PixelFormat>(&self, depth: bool, is_orthographic: bool, is_gray: bool) -> Needs {
-        let scale = self.scale_log2;
-        let packed_log2 = self.packed_log2.map(|log2| log2.map(u32::from));
-        let packing = Packing::new(packed_log2, scale.into(), self.inputs());
-        let of_small = Packing::new(packed_log2, 0, self.inputs());
-        Needs {
+        let mut needs = Needs {
             code: self.code,
             straight: if is_orthographic { Straight::Always } else { self.straight },
             every_pixel: self.every_pixel,
-            scale,
-            unscaled_packing: packing,
-            margins: of_small.margins(),
-            packing: of_small,
+            scale: self.scale_log2,
+            unscaled_packing: Packing::NONE,
+            margins: [0; 2],
+            packing: Packing::NONE,
             color_step: F::COLOR_STEP,
             depth,
             gray: is_gray || self.is_gray,
             rows_below: false,
-        }
+        };
+        needs.pack(self.packed_log2);
+        needs
     }
 }
