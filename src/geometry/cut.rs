@@ -123,7 +123,7 @@ impl Polygon<'_> {
         while first + 1 < end {
             end -= 1;
             if let Some((a, b)) = two(self.vertices, first, end) {
-                exchange(a, b);
+                a.exchange(b);
             }
             if let Some((a, b)) = two(&mut self.lower, first, end) {
                 a.iter_mut().zip(b).for_each(|(a, b)| mem::swap(a, b));
@@ -134,18 +134,6 @@ impl Polygon<'_> {
             first += 1;
         }
     }
-}
-
-/// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and swaps them by words; number by number, so
-/// that none is on the stack.
-#[inline(never)]
-fn exchange(a: &mut ScreenVertex, b: &mut ScreenVertex) {
-    mem::swap(&mut a.x, &mut b.x);
-    mem::swap(&mut a.y, &mut b.y);
-    mem::swap(&mut a.q, &mut b.q);
-    mem::swap(&mut a.u, &mut b.u);
-    mem::swap(&mut a.v, &mut b.v);
-    mem::swap(&mut a.color, &mut b.color);
 }
 
 /// Two elements, `first` < `last`.
@@ -191,7 +179,7 @@ impl Clip {
         for (i, vertex) in corners.into_iter().enumerate() {
             // One after another, so that they are not on the stack together.
             let may_be_inside = self.start(to_clip, vertex, &mut polygon, i);
-            outside |= self.sides_of(to_clip, vertex, &mut polygon, i, may_be_inside);
+            outside |= self.sides(to_clip, vertex, &mut polygon, (i, may_be_inside));
         }
         // A side outside of which no vertex lies cuts nothing off. (In a loop that is not unrolled.)
         let mut side = 0;
@@ -239,14 +227,8 @@ impl Clip {
     /// Sets the position of corner `i`, a vertex of the triangle, if it needs no clipping. Returns the sides outside of which it lies.
     #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
     #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline(always))]
-    fn sides_of(
-        &self,
-        to_clip: &ToClip,
-        vertex: &Vertex,
-        polygon: &mut Polygon<'_>,
-        i: usize,
-        may_be_inside: bool,
-    ) -> u32 {
+    fn sides(&self, to_clip: &ToClip, vertex: &Vertex, polygon: &mut Polygon<'_>, at: (usize, bool)) -> u32 {
+        let (i, may_be_inside) = at;
         self.look(polygon, i);
         let Some(to) = polygon.vertices.get_mut(i) else {
             return 0;

@@ -14,6 +14,7 @@ use super::vertex_colors::VertexColors;
 use crate::num::{I12F4, I16F16, U1F31, U8F8};
 use crate::scene::Vertex;
 use core::fmt;
+use core::mem;
 use core::ops::RangeInclusive;
 
 /// A vertex on the screen. q is linear on the screen. u, v and colour are linear in space: interpolation has to correct for
@@ -67,6 +68,18 @@ impl ScreenVertex {
     pub(crate) fn set_attributes(&mut self, vertex: &Vertex, coloring: &VertexColors<'_>) {
         [self.u, self.v] = vertex.uv.map(I16F16::from);
         coloring.of_vertex(vertex, &mut self.color);
+    }
+
+    /// Swaps two vertices. A function of its own, so that the compiler knows that they are two, and swaps them by words; number by number,
+    /// so that none is on the stack.
+    #[inline(never)]
+    pub(super) fn exchange(&mut self, other: &mut Self) {
+        mem::swap(&mut self.x, &mut other.x);
+        mem::swap(&mut self.y, &mut other.y);
+        mem::swap(&mut self.q, &mut other.q);
+        mem::swap(&mut self.u, &mut other.u);
+        mem::swap(&mut self.v, &mut other.v);
+        mem::swap(&mut self.color, &mut other.color);
     }
 }
 
