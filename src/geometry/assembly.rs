@@ -22,8 +22,8 @@ use crate::scene::{Mesh, Projection, Triangles, Vertex};
 /// How many vertices the cache holds, the newest taking the place of the oldest. As many as a clipped triangle may have corners,
 /// since clipping makes its polygon in the cache's memory.
 const CACHED: usize = MOST_CORNERS;
-/// How many hints there are: a vertex's is that of its index modulo this. (With 64 a torus of 500 vertices would be drawn 1 % faster.)
-const HINTS: usize = 32;
+/// How many hints there are: a vertex's is that of its index modulo this.
+const HINTS: usize = 64;
 /// u of a vertex that has no attributes yet: beyond all there are. (A number that shares no part with others saves 4 cycles.)
 const MISSING: I16F16 = I16F16::from_bits(0x7f00_0000);
 
@@ -31,29 +31,21 @@ const MISSING: I16F16 = I16F16::from_bits(0x7f00_0000);
 /// in which Armv6-M reaches them with the fewest registers.
 #[repr(C)]
 pub(crate) struct VertexCache<'m> {
-    slots: Slots,
-    pub(crate) clipped: Clipped,
-    /// The mesh's triangles that were not looked at yet.
-    left: Triangles<'m>,
-    vertices: [ScreenVertex; CACHED],
-}
-
-/// Where vertices are. While a triangle is clipped this is memory for its polygon: so it is as large, without gaps.
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Slots {
     /// The index, in the mesh, of the vertex in each slot.
     owners: [u16; CACHED],
     /// The slot that was filled last.
     newest: u8,
+    pub(crate) clipped: Clipped,
     /// The piece of a clipped triangle that comes next, or the last that came.
     piece: u8,
-    /// 1 if it is still to come, else 0.
-    has_piece: u8,
-    unused: u8,
+    /// Whether it is still to come.
+    has_piece: bool,
+    /// The mesh's triangles that were not looked at yet.
+    left: Triangles<'m>,
     /// For each index modulo [`HINTS`] the slot of the vertex that was placed last. A vertex whose hint another one took is not
     /// found: it is transformed again, and is then in the cache twice.
     hints: [u8; HINTS],
+    vertices: [ScreenVertex; CACHED],
 }
 
 /// What is still to come of the triangle last looked at, if it has to be clipped.
@@ -69,14 +61,24 @@ pub(crate) enum Clipped {
     Folded(u8),
 }
 
+// So that clipping finds room where the hints are.
+const _: () = assert!(
+    core::mem::offset_of!(VertexCache<'_>, hints).is_multiple_of(align_of::<Upper>())
+        && size_of::<Upper>() <= HINTS
+);
+
 impl<'m> VertexCache<'m> {
     /// For a new mesh. Before use it has to [`forget`](Self::forget): here, vertex 0 counts as cached.
     #[inline]
     pub(crate) fn new(mesh: &Mesh<'m>) -> Self {
         Self {
-            slots: bytemuck::Zeroable::zeroed(),
+            owners: [0; CACHED],
+            newest: 0,
             clipped: Clipped::None,
+            piece: 0,
+            has_piece: false,
             left: mesh.indices(),
+            hints: [0; HINTS],
             vertices: [ScreenVertex::ZERO; CACHED],
         }
     }
@@ -84,10 +86,9 @@ impl<'m> VertexCache<'m> {
     /// Empties the cache. Slot 0 counts as vertex 1 then and all others as vertex 0, while the hints of these two lead to
     /// slots 0 and 1. So neither they nor any other vertex is found.
     pub(crate) fn forget(&mut self) {
-        let Slots { owners, hints, .. } = &mut self.slots;
-        *owners = [0; CACHED];
-        owners[0] = 1;
-        [hints[0], hints[1]] = [0, 1];
+        self.owners = [0; CACHED];
+        self.owners[0] = 1;
+        [self.hints[0], self.hints[1]] = [0, 1];
     }
 
     /// The polygon that is left of the triangle that was cut last.
@@ -101,28 +102,27 @@ impl<'m> VertexCache<'m> {
 
     /// Lets a piece of it be the [next](Assembler::next) triangle.
     pub(crate) fn set_piece(&mut self, number: usize) {
-        (self.slots.piece, self.slots.has_piece) = (number as u8, 1);
+        (self.piece, self.has_piece) = (number as u8, true);
     }
 
     /// The slot of a vertex, if it is found.
     #[inline(always)]
     fn find(&self, index: u16) -> Option<usize> {
-        let slot = usize::from(self.slots.hints[usize::from(index) % HINTS]);
-        (self.slots.owners.get(slot) == Some(&index)).then_some(slot)
+        let slot = usize::from(self.hints[usize::from(index) % HINTS]);
+        (self.owners.get(slot) == Some(&index)).then_some(slot)
     }
 
     /// Gives a vertex the oldest slot that is not in the bit set `used`.
     #[inline(always)]
     fn give(&mut self, index: u16, used: u32) -> usize {
         let after = |slot| if slot < CACHED - 1 { slot + 1 } else { 0 };
-        let slots = &mut self.slots;
-        let mut slot = after(usize::from(slots.newest));
+        let mut slot = after(usize::from(self.newest));
         while used >> slot & 1 != 0 {
             slot = after(slot);
         }
-        slots.newest = slot as u8;
-        slots.owners[slot] = index;
-        slots.hints[usize::from(index) % HINTS] = slot as u8;
+        self.newest = slot as u8;
+        self.owners[slot] = index;
+        self.hints[usize::from(index) % HINTS] = slot as u8;
         slot
     }
 }
@@ -289,18 +289,19 @@ impl Assembler<'_> {
             self.complete(index, to);
         }
         let corners = self.corners(cache);
-        // This memory is free meanwhile. Whatever it holds then, no vertex is found once all is forgotten.
-        let upper: &mut Upper = bytemuck::must_cast_mut(&mut cache.slots);
-        let (count, is_folded) = match self.placing.clipping() {
-            Some((to_clip, clip)) => clip.cut(to_clip, corners, &mut cache.vertices, upper),
-            None => (0, false),
+        // The hints' memory is free meanwhile.
+        let upper = cache.hints.get_mut(..size_of::<Upper>()).unwrap_or_default();
+        let upper: Option<&mut Upper> =
+            bytemuck::try_cast_slice_mut(upper).ok().and_then(|upper| upper.first_chunk_mut());
+        let (count, is_folded) = match (self.placing.clipping(), upper) {
+            (Some((to_clip, clip)), Some(upper)) => clip.cut(to_clip, corners, &mut cache.vertices, upper),
+            _ => (0, false),
         };
-        cache.slots.has_piece = 0;
         cache.forget();
         if let Some(light_face) = self.light_face {
             light_face(self, cache, count);
         }
-        cache.slots.piece = count.saturating_sub(2) as u8;
+        cache.piece = count.saturating_sub(2) as u8;
         cache.clipped = if is_folded { Clipped::Folded(count as u8) } else { Clipped::Pieces(count as u8) };
     }
 
@@ -309,27 +310,27 @@ impl Assembler<'_> {
     #[cold]
     #[inline(never)]
     pub(crate) fn find_piece(&self, cache: &mut VertexCache<'_>, stats: &mut impl Count) {
-        while cache.slots.piece > 0 {
-            let number = cache.slots.piece - 1;
+        while cache.piece > 0 {
+            let number = cache.piece - 1;
             cache.set_piece(number.into());
             if self.piece(cache).is_some() {
                 // It is still to come: that was to see whether it is culled.
-                cache.slots.has_piece = 1;
+                cache.has_piece = true;
                 return;
             }
             stats.count(|stats| &mut stats.culled);
         }
-        (cache.slots.has_piece, cache.clipped) = (0, Clipped::None);
+        (cache.has_piece, cache.clipped) = (false, Clipped::None);
     }
 
     /// The piece of the clipped triangle that comes next, once.
     #[cold]
     #[inline(never)]
     fn piece<'c>(&self, cache: &'c mut VertexCache<'_>) -> Option<Oriented<'c>> {
-        if core::mem::take(&mut cache.slots.has_piece) == 0 {
+        if !core::mem::take(&mut cache.has_piece) {
             return None;
         }
-        Oriented::new(piece(cache.polygon(), cache.slots.piece.into())?, self.cull)
+        Oriented::new(piece(cache.polygon(), cache.piece.into())?, self.cull)
     }
 }
 
@@ -342,7 +343,7 @@ pub(super) fn light_face(assembler: &Assembler<'_>, cache: &mut VertexCache<'_>,
         return;
     };
     // The cache may hold a vertex twice: both are lit.
-    for (i, (owner, vertex)) in cache.slots.owners.iter().zip(&mut cache.vertices).enumerate() {
+    for (i, (owner, vertex)) in cache.owners.iter().zip(&mut cache.vertices).enumerate() {
         if polygon_corners == 0 && indices.contains(owner) {
             vertex.set_attributes(assembler.mesh.vertex(*owner), &assembler.coloring);
             dim(&mut vertex.color, light);
