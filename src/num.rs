@@ -16,6 +16,8 @@
 //! | texture coordinate on screen | [`I16F16`] | −8192 … 8192 texels | 2⁻¹⁶ texel |
 //! | colour channel on screen | [`U8F8`] | 0 … 255 is dark … full | 1/256 |
 
+use core::hint::black_box;
+
 pub use fixed::types::{I2F14, I2F30, I4F12, I12F4, I16F16, U1F31, U8F8, U10F22};
 
 /// Whether arithmetic is done as Armv6-M needs it, which has no 32 × 32 → 64 multiply and cannot count zeros.
@@ -220,6 +222,22 @@ pub(crate) const fn leading_zeros(value: u64) -> u32 {
     }
     let upper = zeros_of((value >> 32) as u32);
     if upper < 32 { upper } else { 32 + zeros_of(value as u32) }
+}
+
+/// The number of the lowest bit that is set: one is. On Armv6-M one after another: the compiler's way takes a table.
+#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
+#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
+pub(crate) fn lowest_bit(mut of: u32) -> usize {
+    if !IS_ARMV6M {
+        return of.trailing_zeros() as usize;
+    }
+    let mut number = 0;
+    while of & 1 == 0 {
+        (of, number) = (of >> 1, number + 1);
+        // Not unrolled.
+        black_box(());
+    }
+    number
 }
 
 /// `value / 2^shift`, rounded to nearest, halves up, for a `shift` of 0 … 63.

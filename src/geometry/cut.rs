@@ -39,10 +39,10 @@ use super::clip::{CUT_AT, Clip, FINER, on_border};
 use super::fan::center;
 use super::ratio::{Ratio, mix};
 use super::screen::ScreenVertex;
-use super::transform::{FINE, Split, ToClip};
-use crate::num::{I12F4, I16F16, IS_ARMV6M, U8F8, mul_long, wide, zeros_of};
+use super::split::Split;
+use super::transform::{FINE, ToClip};
+use crate::num::{I12F4, I16F16, U8F8, lowest_bit, mul_long, wide, zeros_of};
 use crate::scene::Vertex;
-use core::hint::black_box;
 use core::mem;
 
 /// The most corners that a clipped triangle has: three, and one more for each plane.
@@ -143,22 +143,6 @@ fn two<T>(all: &mut [T], first: usize, last: usize) -> Option<(&mut T, &mut T)> 
         (before, [last, ..]) => Some((before.get_mut(first)?, last)),
         _ => None,
     }
-}
-
-/// The number of the lowest bit that is set: one is. On Armv6-M one after another: the compiler's way takes a table.
-#[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-#[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-fn lowest_bit(mut of: u32) -> usize {
-    if !IS_ARMV6M {
-        return of.trailing_zeros() as usize;
-    }
-    let mut number = 0;
-    while of & 1 == 0 {
-        (of, number) = (of >> 1, number + 1);
-        // Not unrolled.
-        black_box(());
-    }
-    number
 }
 
 impl Clip {

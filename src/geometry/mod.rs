@@ -8,6 +8,7 @@ mod fan;
 mod orient;
 mod ratio;
 mod screen;
+mod split;
 mod stats;
 mod transform;
 mod vertex_colors;

@@ -12,6 +12,7 @@
 //! A mesh may reach 16 000 units far and still be cut at a near plane 1/256 of a unit before the eye: no 32 bits hold both. What
 //! is so near that 32 bits are too few for it is cut off by [`clip`](super::clip), and clipping has 14 bits more: [`FINE`].
 
+use super::split::Split;
 use crate::math::{Pose, dot};
 use crate::num::{
     I4F12, I16F16, U10F22, leading_zeros, mul_long, shift_round, wide, wide_unsigned, zeros_of,
@@ -338,32 +339,6 @@ fn root_or_more(square: u32) -> u32 {
         tangents.iter().fold(u32::MAX, |least, (half, slope)| least.min(half + ((square * slope) >> 16)));
     // What was cut off, and half a step.
     (least + 2 + halved) >> halved
-}
-
-/// A number of 64 bits, as lower and upper half. (An `i64` is aligned to 8 bytes, and to clear some takes a routine of its own.)
-#[derive(Clone, Copy)]
-pub(super) struct Split([u32; 2]);
-
-impl Split {
-    const ZERO: Self = Self([0; 2]);
-
-    pub(super) fn new(value: i64) -> Self {
-        Self([value as u32, (value >> 32) as u32])
-    }
-
-    #[inline(always)]
-    pub(super) fn value(self) -> i64 {
-        let Self([lower, upper]) = self;
-        (u64::from(upper) << 32 | u64::from(lower)) as i64
-    }
-
-    /// Sets it, and adds the bits that are in its size to `all`. Out of line on Armv6-M, as what calls it is unrolled.
-    #[cfg_attr(all(target_arch = "arm", not(target_has_atomic = "32")), inline(never))]
-    #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
-    fn set(&mut self, value: i64, all: &mut Self) {
-        *self = Self::new(value);
-        *all = Self::new(all.value() | value.unsigned_abs() as i64);
-    }
 }
 
 /// The matrix before it is rounded, without the focal length.
