@@ -134,7 +134,7 @@ pub(crate) const fn wide_unsigned(a: u32, b: u32) -> u64 {
 #[cfg_attr(not(all(target_arch = "arm", not(target_has_atomic = "32"))), inline)]
 pub(crate) const fn mul_long(a: i64, b: i32) -> i64 {
     let (upper, lower) = ((a >> 30) as i32, (a & ((1 << 30) - 1)) as i32);
-    wide(upper, b) + (wide(lower, b) >> 30)
+    wide(upper, b) + (wide_inlined(lower, b) >> 30)
 }
 
 /// The upper 32 bits of `a · b` for a `b` of 0 … 2³¹, or up to 2 less: three short products on Armv6-M.
