@@ -90,26 +90,22 @@ impl<'l> Kept<'l> {
         if self.next == NONE {
             (self.first, self.last, self.end) = (0, 0, self.words.len());
         }
-        let is_behind = self.last >= self.first;
-        let most = if is_behind { self.words.len() } else { self.first - 1 };
-        let Some(to) = self.words.get_mut(self.last..most) else {
-            return;
-        };
-        let mut last = setup.keep(id, rows, needs, to).map(|left| most - left.len());
-        if last.is_none() && is_behind {
-            // From the start again.
-            let most = self.first.saturating_sub(1);
-            let to = self.words.get_mut(..most).unwrap_or_default();
-            last = setup.keep(id, rows, needs, to).map(|left| most - left.len());
-            if last.is_some() {
-                self.end = self.last;
+        // Behind the last one, or, if that is too short, from the start again. A loop, so that the code is there once.
+        let (mut at, mut end) = (self.last, self.end);
+        let mut most = if at >= self.first { self.words.len() } else { self.first - 1 };
+        loop {
+            let to = self.words.get_mut(at..most).unwrap_or_default();
+            if let Some(left) = setup.keep(id, rows, needs, to) {
+                (self.last, self.end) = (most - left.len(), end);
+                break;
             }
+            if at < self.first || self.first == 0 {
+                return;
+            }
+            (at, end, most) = (0, at, self.first - 1);
         }
-        if let Some(last) = last {
-            if self.next == NONE {
-                self.next = self.words.first().copied().unwrap_or(NONE);
-            }
-            self.last = last;
+        if self.next == NONE {
+            self.next = self.words.first().copied().unwrap_or(NONE);
         }
     }
 }
