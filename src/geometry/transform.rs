@@ -385,6 +385,7 @@ fn scaled(value: i32, scale: U10F22) -> i64 {
 fn shortened(value: i64, dropped: i32, focal: i32) -> i32 {
     let value =
         if dropped >= 0 { shift_round(value, dropped.min(63) as u32) } else { value << -dropped.max(-63) };
+    // As `mul_round`, but with the one copy of the product: that has its own wherever it is.
     if focal != 0 { ((wide(value as i32, focal) + (1 << 30)) >> 31) as i32 } else { value as i32 }
 }
 
